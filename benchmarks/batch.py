@@ -17,7 +17,7 @@ from attrs import evolve
 from catalogue import catalogue
 from report import Column, Section, run_alone
 from workhold.batch.run import ANY_PART
-from workhold.batch.store import part_record
+from workhold.batch.store import make_part_record
 from workhold.batch.tasks import Answering, Task
 from workhold.batch.workers import LocalWorkers
 from workhold.files.toolkit_file import load_toolkit
@@ -39,13 +39,13 @@ COLUMNS = (
 class Nobody:
     """Looks away."""
 
-    def begun(self, worker: str, title: str) -> None:
+    def note_begun(self, worker: str, title: str) -> None:
         """See ``batch.tasks.Watcher``."""
 
-    def ended(self, worker: str) -> None:
+    def note_ended(self, worker: str) -> None:
         """See ``batch.tasks.Watcher``."""
 
-    def told(self, sentence: str) -> None:
+    def notify(self, sentence: str) -> None:
         """See ``batch.tasks.Watcher``."""
 
 
@@ -70,7 +70,7 @@ def searching(length: int) -> Iterator[Task]:
     """Searches of a catalogue in some toolkits."""
     queries = [Query(ANY_PART, load_toolkit(name).toolkit) for name in PRESETS]
     for number, (part, query) in enumerate(product(catalogue(length), queries)):
-        yield Answering(f"search-{number}", part.name, part_record(part, ()), query, 10)
+        yield Answering(f"search-{number}", part.name, make_part_record(part, ()), query, 10)
 
 
 def seconds_of(queue: Callable[[], Any], tasks: list[Task], workers: int) -> float:

@@ -63,16 +63,16 @@ def run(quick: bool) -> Section:
 
 def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, float, float, float, float]]:
     """The law, logarithms of faces and steps, seconds measured and predicted of every part in every toolkit."""
-    from workhold.batch.durations import answering_seconds, measures
+    from workhold.batch.durations import compute_measures, predict_answering_seconds
     from workhold.batch.run import ANY_PART
-    from workhold.batch.store import part_record
-    from workhold.batch.tasks import Answering, done
+    from workhold.batch.store import make_part_record
+    from workhold.batch.tasks import Answering, run_task
     from workhold.files.toolkit_file import load_toolkit
     from workhold.model.query import Query
 
     runs = []
     for number, part in enumerate(catalogue(length)):
-        record = part_record(part, ())
+        record = make_part_record(part, ())
         x0, y0, x1, y1 = part.bounds
         for name in presets:
             if number % EVERY.get(name, 1):
@@ -80,12 +80,14 @@ def measured_runs(length: int, presets: tuple[str, ...]) -> list[tuple[str, floa
             vise = load_toolkit(name)
             task = Answering("", "", record, Query(ANY_PART, vise.toolkit, tolerance=vise.tolerance), 10)
             if not runs:
-                done(task)
+                run_task(task)
             start = process_time()
-            outcome = done(task)
+            outcome = run_task(task)
             assert not outcome.failure, outcome.failure
             about = len(part.faces), (x1 - x0, y1 - y0), vise.toolkit
-            runs.append((*measures(*about), process_time() - start, answering_seconds(*about)))
+            runs.append(
+                (*compute_measures(*about), process_time() - start, predict_answering_seconds(*about))
+            )
     return runs
 
 

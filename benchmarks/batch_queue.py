@@ -19,7 +19,7 @@ from attrs import frozen
 from batch import Nobody
 from report import Column, Section, run_alone
 from workhold.batch.durations import Measured
-from workhold.batch.store import FolderStore, refusal_record
+from workhold.batch.store import FolderStore, make_refusal_record
 from workhold.batch.tasks import Task
 from workhold.batch.workers import LocalWorkers
 
@@ -41,9 +41,9 @@ class Empty(Task):
     def prepare(self) -> None:
         """Nothing."""
 
-    def record(self) -> bytes:
+    def make_record(self) -> bytes:
         """A record like any other."""
-        return refusal_record("nothing was asked")
+        return make_refusal_record("nothing was asked")
 
 
 def run(quick: bool) -> Section:

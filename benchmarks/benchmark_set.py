@@ -16,8 +16,8 @@ from typing import Any
 
 from benchmark_parts import BenchmarkPart, benchmark_parts
 from benchmark_sets import AskedSet, asked_sets
-from workhold.benchmark.catalogue import set_text, sums_of
-from workhold.fixels.kinds import toolkit_of
+from workhold.benchmark.catalogue import compute_checksums, set_text
+from workhold.fixels.kinds import make_toolkit
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
@@ -104,7 +104,7 @@ def written(part: BenchmarkPart) -> dict[str, str]:
 def entry_of(asked: AskedSet, workpiece: Workpiece) -> dict[str, Any]:
     """Search a set; what the manifest says of it."""
     fields = dict(asked.toolkit)
-    toolkit = toolkit_of(fields.pop("kind"), fields)
+    toolkit = make_toolkit(fields.pop("kind"), fields)
     listing = asked.options.get("listing")
     result = answer(Query(workpiece, toolkit, listing=listing), threads=1)
     undecided = -1 if result.proof is None else len(result.proof.undecided)
@@ -117,7 +117,7 @@ def entry_of(asked: AskedSet, workpiece: Workpiece) -> dict[str, Any]:
         "reason": asked.reason,
         "counts": head["counts"],
         "distinct": head["distinct"],
-        "sums": sums_of(head, lines),
+        "sums": compute_checksums(head, lines),
         "undecided": undecided,
     }
 

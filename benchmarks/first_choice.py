@@ -40,7 +40,7 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.seating import SMALL_CAPTURE
-from workhold.presenting.figure_words import no_edge
+from workhold.presenting.figure_words import find_edgeless_distance
 
 ROOT = Path(__file__).parents[1]
 PAGE, PICTURES = ROOT / "docs" / "first-choice.md", ROOT / "docs" / "figures" / "first-choice"
@@ -89,7 +89,7 @@ def seated(result: workhold.Result) -> dict[str, Any]:
 def chosen(part: ShopPart, seating: int | None = None) -> dict[str, Any]:
     """The first choice for a part: its figures, the best of each, what targets it meets, and its picture."""
     result = workhold.design(part.make(), part.vise, restrictions=part.restrictions, seating=seating)
-    quality, longest = result.table.quality.copy(), no_edge(result.workpiece, part.vise)
+    quality, longest = result.table.quality.copy(), find_edgeless_distance(result.workpiece, part.vise)
     quality[quality[:, EDGE_DISTANCE] >= longest * (1 - 1e-9), EDGE_DISTANCE] = inf
     good = quality[quality[:, WARNINGS] == quality[:, WARNINGS].min()]
     best = {n: float((good[:, n].max if FIGURES[n].more_is_better else good[:, n].min)()) for n in SHOWN}
@@ -116,7 +116,7 @@ def value(number: int, found: float, part: ShopPart) -> str:
     if isinf(found):
         return "none"
     if FIGURES[number].unit == "mm":
-        return part.unit.text(found, part.unit.decimals)
+        return part.unit.format_length(found, part.unit.decimals)
     return f"{found:.2f}"
 
 
@@ -148,7 +148,7 @@ def seated_row(choice: dict[str, Any]) -> str:
     told, unit = choice["seating"], choice["part"].unit
 
     def length(found: float, endless: str) -> str:
-        return endless if np.isinf(found) else f"{unit.text(found, unit.decimals)}"
+        return endless if np.isinf(found) else f"{unit.format_length(found, unit.decimals)}"
 
     return (
         f"| {choice['part'].name} | {choice['holes']} | {choice['angle']:.3f}° | {length(told['caught'], 'any')} "

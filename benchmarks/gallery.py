@@ -20,8 +20,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import workhold
 from shop_parts import PARTS, ShopPart
-from workhold.drawing.bench import Bench, bench_of, draw_bench
-from workhold.drawing.render import svg_to_png
+from workhold.drawing.bench import Bench, draw_bench, make_bench
+from workhold.drawing.render import convert_svg_to_png
 from workhold.drawing.scene import Box, Scene, View
 from workhold.fixels.toolkit import Toolkit
 
@@ -68,40 +68,40 @@ def first_choices(part: ShopPart) -> dict[str, Bench]:
         if len(result):
             worth = result[0].quality["warnings"], result[0].quality["penalty"]
             if name not in found or worth < best[name]:
-                found[name], best[name] = bench_of(result[0], result.workpiece, toolkit), worth
+                found[name], best[name] = make_bench(result[0], result.workpiece, toolkit), worth
     return found
 
 
 def card(bench: Bench, title: str) -> str:
     """A small picture as SVG text."""
-    scene = Scene.page(CARD, title)
+    scene = Scene.make_page(CARD, title)
     draw_on(scene, bench, Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE))
-    return scene.svg()
+    return scene.to_svg()
 
 
 def draw_on(scene: Scene, bench: Bench, room: Box) -> None:
     """Draw a fixture into a room, as large as it fits."""
-    draw_bench(scene, bench, View.fitting(bench.extent, room), weight=0.6, longest=34.0, axes=False)
+    draw_bench(scene, bench, View.fit_box(bench.extent, room), weight=0.6, longest=34.0, axes=False)
 
 
 def side_by_side(benches: dict[str, Bench]) -> str:
     """The picture at the head of the README."""
     width, height = ROOM
-    scene = Scene.page((width * len(benches), height + CAPTION), "One part, held in three ways")
+    scene = Scene.make_page((width * len(benches), height + CAPTION), "One part, held in three ways")
     for number, (bench, words) in enumerate(zip(benches.values(), IN_THREE_WAYS, strict=True)):
         x = number * width
         draw_on(scene, bench, Box(x + EDGE, EDGE, x + width - EDGE, height - EDGE))
-        scene.text((x + width / 2, height + CAPTION / 2), words, 18, "middle", bold=True)
-    return scene.svg()
+        scene.add_text((x + width / 2, height + CAPTION / 2), words, 18, "middle", bold=True)
+    return scene.to_svg()
 
 
 def write_images(benches: dict[str, Bench]) -> None:
     """The pictures of the bracket in README and manual: in three ways, the sheet's first page, and with two clamps."""
-    (IMAGES / "held-in-three-ways.png").write_bytes(svg_to_png(side_by_side(benches), WIDTH))
+    (IMAGES / "held-in-three-ways.png").write_bytes(convert_svg_to_png(side_by_side(benches), WIDTH))
     bracket = PARTS[0].make()
     plate = workhold.Plate.preset("two-clamp-plate-20mm")
     clamped = workhold.design(bracket, plate, best=1)[0].draw(title="Fixture 1")
-    (IMAGES / "two-clamps.png").write_bytes(svg_to_png(clamped, 1100))
+    (IMAGES / "two-clamps.png").write_bytes(convert_svg_to_png(clamped, 1100))
     with TemporaryDirectory() as folder:
         sheet = Path(folder) / "sheet.svg"
         first = workhold.design(bracket, PARTS[0].vise)[0]
@@ -111,7 +111,7 @@ def write_images(benches: dict[str, Bench]) -> None:
     first_page = re.sub(
         r'height="420mm" viewBox="0 0 1188 1680"', 'height="210mm" viewBox="0 0 1188 840"', pages, count=1
     )
-    (IMAGES / "sheet.png").write_bytes(svg_to_png(first_page, 1200))
+    (IMAGES / "sheet.png").write_bytes(convert_svg_to_png(first_page, 1200))
 
 
 def told(part: ShopPart, benches: dict[str, Bench]) -> str:

@@ -28,7 +28,7 @@ from typing import Any
 import numpy as np
 
 from line_plot import CALLED, Curve, line_plot
-from workhold.benchmark.catalogue import SetEntry, query_of, sets
+from workhold.benchmark.catalogue import SetEntry, load_sets, make_set_query
 from workhold.fixels.contacts import CLAMP_TIP
 from workhold.geometry.segment import segment_rows
 from workhold.model.fixture_table import FixtureTable, peg_places
@@ -47,7 +47,7 @@ Array = Any
 def main() -> None:
     """Measure every set, write the data and the plot."""
     rows = []
-    for entry in sets():
+    for entry in load_sets():
         if entry.size:
             rows.append(measured(entry))
             sys.stdout.write(f"{entry.name}: {rows[-1]['fixed']}\n")
@@ -92,7 +92,7 @@ def mean_shares(rows: Sequence[Mapping[str, Any]], rule: str) -> list[float]:
 
 def measured(entry: SetEntry) -> dict[str, Any]:
     """The shares of a set at all steps, by both rules."""
-    query = query_of(entry)
+    query = make_set_query(entry)
     table = answer(query, threads=1).table
     chosen = np.unique(np.linspace(0, len(table) - 1, min(MOST, len(table))).astype(int))
     part = table.take(chosen)

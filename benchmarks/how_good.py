@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from line_plot import CALLED, Bar, bar_plot
-from workhold.benchmark.catalogue import SetEntry, manifest, query_of, set_named, sets
+from workhold.benchmark.catalogue import SetEntry, load_manifest, load_sets, make_set_query, set_named
 from workhold.geometry.segment import Line
 from workhold.model.fixture_table import FixtureTable, peg_places
 from workhold.model.quality import CLAMP_AMPLIFICATION, LOCATION_ERROR
@@ -47,7 +47,7 @@ Array = Any
 def main() -> None:
     """Measure every set; write data and plots."""
     rows = []
-    for entry in sets():
+    for entry in load_sets():
         if entry.size:
             rows.append(measured(entry))
             sys.stdout.write(f"{json.dumps(rows[-1])}\n")
@@ -107,11 +107,11 @@ def summary(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def measured(entry: SetEntry) -> dict[str, Any]:
     """What the rule finds in a set, and what the list gains over it."""
-    query = query_of(entry)
+    query = make_set_query(entry)
     table = answer(query, threads=1).table
     picked = by_rule(query, table)
     error, force = table.quality[:, LOCATION_ERROR], table.quality[:, CLAMP_AMPLIFICATION]
-    family = manifest()["workpieces"][entry.part]["family"]
+    family = load_manifest()["workpieces"][entry.part]["family"]
     row: dict[str, Any] = {
         "set": entry.name,
         "kind": words_of(query),
@@ -235,7 +235,7 @@ def find_contact_normals(query: Query, part: FixtureTable, peg: int) -> Array:
     known = Touched.of(query.workpiece, query.toolkit)
     pose = np.column_stack([part.theta, part.position])
     x, y = peg_places(part, query.toolkit, query.workpiece)
-    carriers = query.toolkit.peg_carriers(part.arrangement)
+    carriers = query.toolkit.find_peg_carriers(part.arrangement)
     found = known.contact_matrices(np.stack([x, y], axis=2), pose, carriers, part.face.astype(np.int64))
     return found.normals[:, peg]
 
@@ -244,7 +244,7 @@ def seated_rows(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """From how wide open a vise catches the part, for measured sets: by the rule, and the most precise of the list."""
     out = []
     for row in rows:
-        query = query_of(set_named(row["set"]))
+        query = make_set_query(set_named(row["set"]))
         if query.toolkit.carriers[0].peg_radius == 0:
             continue
         result = answer(query, threads=1)

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from report import Column, Section
-from workhold.files.glb import bodies_glb
+from workhold.files.glb import make_bodies_glb
 from workhold.geometry.segment import Arc, Box
 from workhold.model.bodies import BodyKind, FixtureBody, Slab, rectangle
 
@@ -93,7 +93,7 @@ def measured_frames(folder: Path, count: int) -> list[tuple[tuple[int, int], boo
     """Times in ms of the frames for each size of the canvas, with WebGL and without."""
     from playwright.sync_api import sync_playwright
 
-    glb = base64.b64encode(bodies_glb(many_bodies(), "many")).decode()
+    glb = base64.b64encode(make_bodies_glb(many_bodies(), "many")).decode()
     server = ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Quiet, directory=str(folder)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     chromium = shutil.which("chromium") or shutil.which("chromium-browser")

@@ -23,18 +23,18 @@ def draw_large(points: Mapping[str, Sequence[tuple[float, float]]], best: int) -
     best : how many fixtures were sought.
     """
     axes = Axes.around([point for several in points.values() for point in several])
-    scene = Scene.page(PAGE, f"What the best {best} fixtures of a plate cost, by the holes under it")
+    scene = Scene.make_page(PAGE, f"What the best {best} fixtures of a plate cost, by the holes under it")
     draw_grid(scene, axes, "holes under the part", "seconds of the processor")
     for place, (kit, several) in enumerate(points.items()):
         colour, fit = COLOURS[place % len(COLOURS)], fitted(several)
         words = kit
         if fit is not None:
             ends = [several[0][0], several[-1][0]]
-            scene.line([axes.place(holes, exp(fit[1]) * holes ** fit[0]) for holes in ends], colour, 2.0)
+            scene.add_line([axes.place(holes, exp(fit[1]) * holes ** fit[0]) for holes in ends], colour, 2.0)
             words = f"{kit}: grows with their power {fit[0]:.2f}"
         for point in several:
-            scene.circle(axes.place(*point), 7.0, colour, colour, 2.0)
+            scene.add_circle(axes.place(*point), 7.0, colour, colour, 2.0)
         y = FRAME.y0 + LINE * (place + 1)
-        scene.circle((FRAME.x0 + 24.0, y), 7.0, colour, colour, 2.0)
-        scene.text((FRAME.x0 + 44.0, y), words, SMALL)
-    return scene.svg()
+        scene.add_circle((FRAME.x0 + 24.0, y), 7.0, colour, colour, 2.0)
+        scene.add_text((FRAME.x0 + 44.0, y), words, SMALL)
+    return scene.to_svg()

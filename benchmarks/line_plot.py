@@ -47,7 +47,7 @@ class Bar:
 
 def line_plot(curves: Sequence[Curve], title: str, across: str, up: str) -> str:
     """Curves over a logarithmic axis, from 0 to 100 upwards."""
-    scene = Scene.page(PAGE, title)
+    scene = Scene.make_page(PAGE, title)
     xs = sorted({x for curve in curves for x, _ in curve.points})
     low, high = log10(xs[0]), log10(xs[-1])
 
@@ -57,31 +57,31 @@ def line_plot(curves: Sequence[Curve], title: str, across: str, up: str) -> str:
 
     for x in xs:
         at = place(x, 0)[0]
-        scene.line([(at, FRAME.y0), (at, FRAME.y1)], PALE, 1.0)
-        scene.text((at, FRAME.y1 + 26), f"{x:g}", SMALL, "middle", fill=GREY)
+        scene.add_line([(at, FRAME.y0), (at, FRAME.y1)], PALE, 1.0)
+        scene.add_text((at, FRAME.y1 + 26), f"{x:g}", SMALL, "middle", fill=GREY)
     for y in range(0, 101, 20):
         at = place(xs[0], y)[1]
-        scene.line([(FRAME.x0, at), (FRAME.x1, at)], PALE, 1.0)
-        scene.text((FRAME.x0 - 12, at), f"{y}", SMALL, "end", fill=GREY)
-    scene.rectangle(FRAME, "none", GREY, 1.5)
-    scene.text((FRAME.center[0], PAGE[1] - 30), across, TEXT, "middle")
-    scene.text((30, FRAME.center[1]), up, TEXT, "middle", turned=90.0)
+        scene.add_line([(FRAME.x0, at), (FRAME.x1, at)], PALE, 1.0)
+        scene.add_text((FRAME.x0 - 12, at), f"{y}", SMALL, "end", fill=GREY)
+    scene.add_rectangle(FRAME, "none", GREY, 1.5)
+    scene.add_text((FRAME.center[0], PAGE[1] - 30), across, TEXT, "middle")
+    scene.add_text((30, FRAME.center[1]), up, TEXT, "middle", turned=90.0)
     for number, curve in enumerate(curves):
         colour = COLOURS[number % len(COLOURS)]
         points = [place(x, y) for x, y in sorted(curve.points)]
-        scene.line(points, colour, 2.5)
+        scene.add_line(points, colour, 2.5)
         for point in points:
-            scene.circle(point, 4.5, colour, colour, 1.0)
+            scene.add_circle(point, 4.5, colour, colour, 1.0)
         at = FRAME.y0 + 20 + 30 * number
-        scene.line([(FRAME.x1 + 20, at), (FRAME.x1 + 50, at)], colour, 3.0)
-        scene.text((FRAME.x1 + 58, at), curve.name, SMALL, "start")
-    return scene.svg()
+        scene.add_line([(FRAME.x1 + 20, at), (FRAME.x1 + 50, at)], colour, 3.0)
+        scene.add_text((FRAME.x1 + 58, at), curve.name, SMALL, "start")
+    return scene.to_svg()
 
 
 def bar_plot(bars: Sequence[Bar], title: str, across: str, most: float) -> str:
     """Bars from 1 to the right on a logarithmic axis, each with the range about it as a thin line."""
     high = 60.0 + 30.0 * len(bars) + 70.0
-    scene = Scene.page((PAGE[0], high), title)
+    scene = Scene.make_page((PAGE[0], high), title)
     left, right, top = 250.0, 830.0, 30.0
 
     def place(x: float) -> float:
@@ -90,15 +90,15 @@ def bar_plot(bars: Sequence[Bar], title: str, across: str, most: float) -> str:
     bottom = top + 30.0 * len(bars)
     for x in (1, 1.5, 2, 3, 5, 10, 20, 50, 100):
         if x <= most:
-            scene.line([(place(x), top), (place(x), bottom)], PALE, 1.0)
-            scene.text((place(x), bottom + 20), f"{x:g}", SMALL, "middle", fill=GREY)
+            scene.add_line([(place(x), top), (place(x), bottom)], PALE, 1.0)
+            scene.add_text((place(x), bottom + 20), f"{x:g}", SMALL, "middle", fill=GREY)
     for number, bar in enumerate(bars):
         y = top + 30.0 * number + 15.0
-        scene.text((left - 12, y), bar.name, SMALL, "end")
-        scene.line([(place(bar.low), y), (place(bar.high), y)], GREY, 1.5)
+        scene.add_text((left - 12, y), bar.name, SMALL, "end")
+        scene.add_line([(place(bar.low), y), (place(bar.high), y)], GREY, 1.5)
         if bar.value > 1:
-            scene.rectangle(Box(left, y - 8, place(bar.value), y + 8), COLOURS[0], COLOURS[0], 1.0)
-        scene.text((right + 16, y), bar.words, SMALL, "start", fill=GREY)
-    scene.line([(left, top), (left, bottom)], GREY, 1.5)
-    scene.text(((left + right) / 2, bottom + 52), across, TEXT, "middle")
-    return scene.svg()
+            scene.add_rectangle(Box(left, y - 8, place(bar.value), y + 8), COLOURS[0], COLOURS[0], 1.0)
+        scene.add_text((right + 16, y), bar.words, SMALL, "start", fill=GREY)
+    scene.add_line([(left, top), (left, bottom)], GREY, 1.5)
+    scene.add_text(((left + right) / 2, bottom + 52), across, TEXT, "middle")
+    return scene.to_svg()

@@ -56,19 +56,19 @@ def draw_grid(scene: Scene, axes: Axes, across: str, up: str) -> None:
     """Lines at the powers of ten, what they are, and what the axes are."""
     for power in range(axes.x0, axes.x1 + 1):
         x, _ = axes.place(10.0**power, 10.0**axes.y0)
-        scene.line([(x, FRAME.y0), (x, FRAME.y1)], PALE, 1.0)
+        scene.add_line([(x, FRAME.y0), (x, FRAME.y1)], PALE, 1.0)
         draw_power(scene, (x - 4.0, FRAME.y1 + 26.0), power, "middle")
     for power in range(axes.y0, axes.y1 + 1):
         _, y = axes.place(10.0**axes.x0, 10.0**power)
-        scene.line([(FRAME.x0, y), (FRAME.x1, y)], PALE, 1.0)
+        scene.add_line([(FRAME.x0, y), (FRAME.x1, y)], PALE, 1.0)
         draw_power(scene, (FRAME.x0 - 30.0, y), power, "end")
-    scene.rectangle(FRAME, "none", GREY, 1.5)
-    scene.text((FRAME.center[0], PAGE[1] - 28.0), across, TEXT, "middle")
-    scene.text((28.0, FRAME.center[1]), up, TEXT, "middle", turned=90.0)
+    scene.add_rectangle(FRAME, "none", GREY, 1.5)
+    scene.add_text((FRAME.center[0], PAGE[1] - 28.0), across, TEXT, "middle")
+    scene.add_text((28.0, FRAME.center[1]), up, TEXT, "middle", turned=90.0)
 
 
 def draw_power(scene: Scene, at: Point, power: int, anchor: str) -> None:
     """A power of ten with its exponent raised, without signs that typefaces lack."""
-    scene.text(at, "10", SMALL, anchor, fill=GREY)
+    scene.add_text(at, "10", SMALL, anchor, fill=GREY)
     shift = 12.0 if anchor == "middle" else 1.0
-    scene.text((at[0] + shift, at[1] - 9.0), str(power).replace("-", "−"), 0.7 * SMALL, fill=GREY)
+    scene.add_text((at[0] + shift, at[1] - 9.0), str(power).replace("-", "−"), 0.7 * SMALL, fill=GREY)

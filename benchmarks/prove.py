@@ -29,7 +29,7 @@ from strategies import random_outline  # noqa: E402
 from workhold import Query, Result, Vise, Workpiece  # noqa: E402
 from workhold.algebra import find_fixtures_by_algebra  # noqa: E402
 from workhold.algebra.table_two import table_two  # noqa: E402
-from workhold.files.part.finding import builtin_parts  # noqa: E402
+from workhold.files.part.finding import list_builtin_parts  # noqa: E402
 from workhold.model.notes import MoreSystems, UndecidedSystem  # noqa: E402
 
 RANDOM_PARTS = 200
@@ -42,7 +42,7 @@ Case = tuple[str, Workpiece, Vise]
 def paper_parts() -> Iterator[Case]:
     """The models of the paper's parts, with one column and with two."""
     for columns in (1, 2):
-        for part in builtin_parts():
+        for part in list_builtin_parts():
             yield part.name, workhold.load(part.name), Vise(pitch=10, columns=columns, peg_radius=3)
 
 

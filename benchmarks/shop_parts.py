@@ -108,7 +108,7 @@ def four(distance: float, diameter: float) -> list[Loop]:
 def part(name: str, *loops: Loop, unit: Unit = MILLIMETRE) -> Callable[[], Workpiece]:
     """A part of loops in a unit."""
     return lambda: Workpiece.from_loops(
-        name, [[[unit.length(x), unit.length(y), bulge] for x, y, bulge in loop] for loop in loops]
+        name, [[[unit.to_mm(x), unit.to_mm(y), bulge] for x, y, bulge in loop] for loop in loops]
     )
 
 

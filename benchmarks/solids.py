@@ -65,7 +65,7 @@ def seconds_of(part: Any, heights: Sequence[float]) -> dict[str, Any]:
     from step_shapes import write_step
 
     from workhold.files.step.by_height import HeightView, read_by_height
-    from workhold.files.step.heights import standing
+    from workhold.files.step.heights import stand_solid
     from workhold.files.step.solids import read_solids
 
     with TemporaryDirectory() as folder:
@@ -73,9 +73,9 @@ def seconds_of(part: Any, heights: Sequence[float]) -> dict[str, Any]:
     shape = read_solids(content)[0].shape
     outlines, faces = [], 0
     for high in heights:
-        solid = standing(shape)
+        solid = stand_solid(shape)
         faces, begin = len(solid.faces), process_time()
-        found = solid.outline(high)
+        found = solid.make_outline(high)
         outlines.append((high, sum(map(len, found.loops)), process_time() - begin))
     begin = process_time()
     read_by_height(content, HeightView(peg_height=heights[-1]))

@@ -27,7 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 
 import workhold
 from cad_parts import SHAPES, Loop, circle, rounded, size
-from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.files.toolkit_file import list_preset_names, load_toolkit
 
 __all__ = ["Searched", "run", "surveyed"]
 
@@ -156,10 +156,10 @@ def run(quick: bool, count: int = PARTS, presets: Sequence[str] = ()) -> Section
     """Search the best of all parts on all presets, and tell the slowest, or of a few parts."""
     section = Section("survey", f"The best {BEST} of parts as they come out of CAD, one thread", COLUMNS)
     # The first search loads kernels.
-    for _ in surveyed(1, preset_names()):
+    for _ in surveyed(1, list_preset_names()):
         pass
     searches = list[Searched]()
-    for searched in surveyed(len(SHAPES | MORE_SHAPES) if quick else count, presets or preset_names()):
+    for searched in surveyed(len(SHAPES | MORE_SHAPES) if quick else count, presets or list_preset_names()):
         searches.append(searched)
         if searched.seconds > MOST_SECONDS:
             sys.stderr.write(f"{searched.part} {searched.toolkit} {searched.seconds:.2f} s\n")

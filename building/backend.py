@@ -57,12 +57,12 @@ def is_asked(what: str) -> bool:
     return os.environ.get("WORKHOLD_WHEEL") == what
 
 
-def needed() -> list[str]:
+def list_build_requirements() -> list[str]:
     """Return what a wheel with the libraries needs besides setuptools: the compiler, where they are to be compiled."""
     return [] if is_asked("built") else COMPILER
 
 
-def are_built() -> bool:
+def are_libraries_built() -> bool:
     """Return whether the package has the libraries of these sources."""
     return all(find_in(KERNELS, room) for room in ROOMS)
 
@@ -82,7 +82,7 @@ def get_requires_for_build_wheel(config_settings: Any = None) -> list[str]:
     """What building a wheel needs, in an environment that is thrown away."""
     return [
         *build_meta.get_requires_for_build_wheel(config_settings),
-        *([] if is_asked("pure") else needed()),
+        *([] if is_asked("pure") else list_build_requirements()),
     ]
 
 
@@ -92,7 +92,7 @@ def build_wheel(
     """Builds a wheel with the kernels of these sources in it."""
     if is_asked("pure"):
         return build_meta.build_wheel(wheel_directory, config_settings, metadata_directory)
-    if is_asked("built") and not are_built():
+    if is_asked("built") and not are_libraries_built():
         sys.exit(
             "The libraries of kernels do not fit these sources: compile them, or leave WORKHOLD_WHEEL out."
         )

@@ -23,7 +23,7 @@ from typer.main import get_command
 
 from workhold.cli.main import COMMANDS, app
 from workhold.errors import InputError
-from workhold.files.result.parts import columns_of
+from workhold.files.result.parts import describe_columns
 from workhold.version import __version__
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -50,12 +50,12 @@ QUOTED = ("pip install --force-reinstall", "workhold sheet ")
 THEOREM_PARTS = ("Statement", "Why", "Used in", "Held by")
 
 
-def text_of(*names: str) -> str:
+def read_project_file(*names: str) -> str:
     """The text of a file of the project."""
     return ROOT.joinpath(*names).read_text(encoding="utf-8")
 
 
-def examples() -> Iterator[str]:
+def find_wrong_examples() -> Iterator[str]:
     """Every printed line equals the comment behind its print call; libraries that are not there are left out."""
     for page in PAGES:
         for block in re.findall(r"```python\n(.*?)```", page.read_text(), flags=re.S):
@@ -73,7 +73,7 @@ def examples() -> Iterator[str]:
                 yield f"{page.name}: an example prints {output.getvalue()!r}, and not {said}."
 
 
-def links() -> Iterator[str]:
+def find_broken_links() -> Iterator[str]:
     """Every relative link names a file of the project."""
     for page in PAGES:
         for target in re.findall(r"\]\(([^)#]+)\)", page.read_text()):
@@ -81,7 +81,7 @@ def links() -> Iterator[str]:
                 yield f"{page.name} has a link to {target}, which is not there."
 
 
-def options_of_commands() -> set[str]:
+def list_command_options() -> set[str]:
     """Every option of every command."""
     group = get_command(app)
     context = group.make_context("workhold", ["design"])
@@ -89,23 +89,23 @@ def options_of_commands() -> set[str]:
     return {word for one in commands for each in one.params for word in (*each.opts, *each.secondary_opts)}
 
 
-def named_options() -> Iterator[str]:
+def find_unknown_options() -> Iterator[str]:
     """Every option that a page names is one of a command."""
-    known = options_of_commands() | OF_OTHERS | {"--help"}
+    known = list_command_options() | OF_OTHERS | {"--help"}
     for page in PAGES:
         for word in sorted(set(OPTION.findall(page.read_text())) - known):
             yield f"{page.name} names {word}, which no command takes."
 
 
-def named_targets() -> Iterator[str]:
+def find_unknown_targets() -> Iterator[str]:
     """``make wheel-test`` in a page is a target of the Makefile."""
-    targets = set(re.findall(r"^([a-z-]+):", text_of("Makefile"), flags=re.M))
+    targets = set(re.findall(r"^([a-z-]+):", read_project_file("Makefile"), flags=re.M))
     for page in PAGES:
         named = set(re.findall(r"(?:`|^ {4})make ([a-z-]+)", page.read_text(), flags=re.M))
         yield from (f"{page.name} names make {word}, which is no target." for word in sorted(named - targets))
 
 
-def named_files() -> Iterator[str]:
+def find_missing_files() -> Iterator[str]:
     """What a page names in a folder of the project is there."""
     for page in PAGES:
         folders = "benchmarks|building|docs|examples|tests"
@@ -114,7 +114,7 @@ def named_files() -> Iterator[str]:
                 yield f"{page.name} names {name}, which is not there."
 
 
-def named_modules() -> Iterator[str]:
+def find_unknown_modules() -> Iterator[str]:
     """What a page names as a module, or as something in one, is there; rooms of kernels may stand by themselves."""
     roots = [SOURCES, SOURCES / "kernels"]
     rooms = "|".join({path.stem for root in roots for path in root.iterdir() if path.stem[0] not in "_."})
@@ -134,9 +134,9 @@ def is_there(root: Path, names: list[str]) -> bool:
     return within.exists() and re.search(rf"\b{names[-1]}\b", within.read_text()) is not None
 
 
-def theorems() -> Iterator[str]:
+def find_incomplete_theorems() -> Iterator[str]:
     """Each has its reason, its place in the code, and tests that exist, and the page's table leads to it."""
-    page = text_of("docs", "method-theorems.md")
+    page = read_project_file("docs", "method-theorems.md")
     sections = dict(re.findall(r"^### (.+?)\n(.*?)(?=^##|\Z)", page, flags=re.M | re.S))
     for title, text in sections.items():
         places = [text.find(f"**{part}") for part in THEOREM_PARTS]
@@ -147,7 +147,7 @@ def theorems() -> Iterator[str]:
         if len(named) < text[places[-1] :].count("\n- ") or not named:
             yield f"theorem {title}: something that holds it is no test."
         for path, name in named:
-            if not (ROOT / path).exists() or f"\ndef {name}(" not in text_of(path):
+            if not (ROOT / path).exists() or f"\ndef {name}(" not in read_project_file(path):
                 yield f"theorem {title}: there is no {path}::{name}."
         for module in re.findall(r"`([a-z_]+(?:\.[a-z_]+)*)`", text[places[2] : places[3]]):
             if module != "distinct" and not is_there(SOURCES, module.split(".")):
@@ -155,12 +155,14 @@ def theorems() -> Iterator[str]:
     table = re.findall(r"\]\(#([\w-]+)\)", page.partition("## ")[0])
     if table != [re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") for title in sections]:
         yield "the table of theorems does not lead to each once, in the order of the page."
-    yield from uncited(page)
+    yield from find_uncited_names(page)
 
 
-def uncited(page: str) -> Iterator[str]:
+def find_uncited_names(page: str) -> Iterator[str]:
     """Names with a year stand under the sources of the page of theorems or of that on belief."""
-    listed = page.partition("## Sources")[2] + text_of("docs", "belief.md").partition("## Sources")[2]
+    listed = (
+        page.partition("## Sources")[2] + read_project_file("docs", "belief.md").partition("## Sources")[2]
+    )
     names = r"([A-Z]\w+(?: (?:and|den) [A-Z]\w+|, [A-Z]\w+(?: and [A-Z]\w+)?)*)"
     for who, year in re.findall(
         rf"{names}[^.()\n]{{0,12}}\(?((?:18|19|20)\d\d)\)?", page.partition("## Sources")[0]
@@ -170,28 +172,28 @@ def uncited(page: str) -> Iterator[str]:
             yield f"theorems cite {who} {year}, which no list of sources has."
 
 
-def benchmarks() -> Iterator[str]:
+def find_outdated_benchmarks() -> Iterator[str]:
     """The page shows what the last bench kept, and has one place for each section that a benchmark keeps."""
     if subprocess.run([sys.executable, ROOT / "benchmarks" / "page.py", "--check"], check=False).returncode:
         yield "docs/benchmarks.md does not show the figures that were kept."
     scripts = [path.read_text() for path in (ROOT / "benchmarks").glob("*.py")]
     sections = {name for text in scripts for name in re.findall(r'Section\(\s*"([a-z-]+)"', text)}
-    places = re.findall(r"<!-- figures: (\S+) -->", text_of("docs", "benchmarks.md"))
+    places = re.findall(r"<!-- figures: (\S+) -->", read_project_file("docs", "benchmarks.md"))
     if sorted(places) != sorted(sections | {"machine", "plot", "targets"}):
         yield "docs/benchmarks.md has not one place for each section of the benchmarks."
 
 
-def layers_checked() -> list[set[str]]:
+def list_checked_layers() -> list[set[str]]:
     """The layers of the import-linter from the highest to the lowest, each with its rooms."""
-    contracts = tomllib.loads(text_of("pyproject.toml"))["tool"]["importlinter"]["contracts"]
+    contracts = tomllib.loads(read_project_file("pyproject.toml"))["tool"]["importlinter"]["contracts"]
     rows = contracts[0]["layers"]
     return [{name.strip().removeprefix("workhold.") for name in row.split("|")} for row in rows]
 
 
-def layers() -> Iterator[str]:
+def find_misordered_layers() -> Iterator[str]:
     """Contributors' table, the architecture and its picture have the rooms in the order that is checked."""
-    checked = layers_checked()
-    rows = re.findall(r"^\| ((?:`[a-z]+`(?:, )?)+) \|", text_of("CONTRIBUTING.md"), flags=re.M)
+    checked = list_checked_layers()
+    rows = re.findall(r"^\| ((?:`[a-z]+`(?:, )?)+) \|", read_project_file("CONTRIBUTING.md"), flags=re.M)
     listed = [name for row in rows for name in re.findall(r"`([a-z]+)`", row)]
     heights = [
         next((height for height, names in enumerate(reversed(checked)) if name in names), -1)
@@ -200,7 +202,10 @@ def layers() -> Iterator[str]:
     if heights != sorted(heights) or len(listed) < len(checked) or -1 in heights:
         yield "CONTRIBUTING.md lists the layers in another order than pyproject.toml."
     rooms = set().union(*checked)
-    page, picture = text_of("docs", "architecture.md"), text_of("docs", "images", "rooms.svg")
+    page, picture = (
+        read_project_file("docs", "architecture.md"),
+        read_project_file("docs", "images", "rooms.svg"),
+    )
     if sorted(re.findall(r"\*\*`([a-z]+)`\*\*", page)) != sorted(rooms):
         yield "docs/architecture.md has not one paragraph for each room."
     drawn = re.findall(r'y="(\d+)" font-size="14" font-weight="bold"[^>]*>(\w+)<', picture)
@@ -215,30 +220,30 @@ def layers() -> Iterator[str]:
         yield "docs/images/rooms.svg has other stations than the table of docs/architecture.md."
 
 
-def citation() -> Iterator[str]:
+def find_wrong_citation() -> Iterator[str]:
     """CITATION.cff names the version of the sources."""
-    if yaml.safe_load(text_of("CITATION.cff"))["version"] != __version__:
+    if yaml.safe_load(read_project_file("CITATION.cff"))["version"] != __version__:
         yield f"CITATION.cff has another version than {__version__}."
 
 
-def columns() -> Iterator[str]:
+def find_undescribed_columns() -> Iterator[str]:
     """Each column written has a row with its kind of number and its shape; what a fixture takes is the sum."""
-    page = text_of("docs", "columns.md")
-    for name, column in columns_of(1).items():
+    page = read_project_file("docs", "columns.md")
+    for name, column in describe_columns(1).items():
         number, shape = np.dtype(column.kind).name, ", ".join(map(str, ("N", *column.shape)))
         if not re.search(rf"^\| .*`{name}.npy`.* \| {number} \| {shape} \|", page, flags=re.M):
             yield f"docs/columns.md has no row of {name}.npy as {number} of shape {shape}."
-    one, two = (sum(column.row_bytes for column in columns_of(count).values()) for count in (1, 2))
+    one, two = (sum(column.row_bytes for column in describe_columns(count).values()) for count in (1, 2))
     if f"{one} bytes a fixture, {two} with two clamps" not in page:
         yield f"docs/columns.md does not say that a fixture takes {one} bytes, {two} with two clamps."
 
 
-def messages() -> Iterator[str]:
+def find_options_in_messages() -> Iterator[str]:
     """Outside the command line no message names an option of it: Python and the page have none."""
     for path in sorted(SOURCES.rglob("*.py")):
         name = path.relative_to(SOURCES).as_posix()
         if not name.startswith(OF_THE_COMMAND):
-            for text in texts(path.read_text()):
+            for text in list_texts(path.read_text()):
                 if (OPTION.search(text) or "see workhold " in text) and not any(
                     one in text for one in QUOTED
                 ):
@@ -255,7 +260,7 @@ def messages() -> Iterator[str]:
 OF_OPTIONS = {"spelled", "typed"}
 
 
-def texts(source: str) -> Iterator[str]:
+def list_texts(source: str) -> Iterator[str]:
     """The texts of a module that are no docstrings; those with values in them with a space for each.
 
     What a declaration says of its option alone is left out.
@@ -273,18 +278,18 @@ def texts(source: str) -> Iterator[str]:
 
 
 CHECKS = (
-    links,
-    named_options,
-    named_targets,
-    named_files,
-    named_modules,
-    theorems,
-    benchmarks,
-    layers,
-    citation,
-    columns,
-    messages,
-    examples,
+    find_broken_links,
+    find_unknown_options,
+    find_unknown_targets,
+    find_missing_files,
+    find_unknown_modules,
+    find_incomplete_theorems,
+    find_outdated_benchmarks,
+    find_misordered_layers,
+    find_wrong_citation,
+    find_undescribed_columns,
+    find_options_in_messages,
+    find_wrong_examples,
 )
 
 

@@ -66,7 +66,7 @@ class Source:
         object.__setattr__(self, "tree", ast.parse(self.text))
 
 
-def sources_of(root: Path) -> list[Source]:
+def list_sources(root: Path) -> list[Source]:
     """Every file of Python below a folder, in the order of their names, but what is data of the package.
 
     The checker of the benchmark lies there: it stands alone, in one file, and shares nothing on purpose.
@@ -75,7 +75,7 @@ def sources_of(root: Path) -> list[Source]:
     return [Source(path.relative_to(root).as_posix(), path.read_text()) for path in names]
 
 
-def lines_asking_for_kind(sources: Sequence[Source]) -> Iterator[str]:
+def find_lines_asking_for_kind(sources: Sequence[Source]) -> Iterator[str]:
     """Each line that asks for the kind of a toolkit where nobody may."""
     for source in sources:
         if not source.name.startswith(tuple(MAY_ASK_FOR_KINDS)):
@@ -90,30 +90,30 @@ def asks_for_kind(node: ast.AST) -> bool:
     """Whether a node of the syntax tree asks which kind of toolkit something is."""
     match node:
         case ast.Call(func=ast.Name(id="isinstance" | "issubclass"), args=[_, kinds]):
-            return bool({last_name(one) for one in ast.walk(kinds)} & KIND_CLASSES)
+            return bool({find_last_name(one) for one in ast.walk(kinds)} & KIND_CLASSES)
         case ast.Compare(left=left, ops=ops, comparators=others):
             sides = [left, *others]
-            if any(is_kind_name(one) for side in sides for one in items_of(side)):
+            if any(is_kind_name(one) for side in sides for one in list_items(side)):
                 return True
             if all(isinstance(one, ast.Is | ast.IsNot) for one in ops):
-                return any(last_name(side) in KIND_CLASSES | {"pair"} for side in sides)
+                return any(find_last_name(side) in KIND_CLASSES | {"pair"} for side in sides)
         case ast.Attribute(attr=name, ctx=ast.Load()):
-            return name in KIND_ATTRIBUTES or (name == "kind" and last_name(node.value) in KIND_CLASSES)
+            return name in KIND_ATTRIBUTES or (name == "kind" and find_last_name(node.value) in KIND_CLASSES)
         case ast.Dict(keys=keys):
             return sum(map(is_kind_name, keys)) > 1
         case ast.MatchValue(value=value):
             return is_kind_name(value)
         case ast.MatchClass(cls=kind):
-            return last_name(kind) in KIND_CLASSES
+            return find_last_name(kind) in KIND_CLASSES
     return False
 
 
-def last_name(node: ast.AST) -> str:
+def find_last_name(node: ast.AST) -> str:
     """The name of a variable or an attribute, and an empty text for anything else."""
     return node.id if isinstance(node, ast.Name) else node.attr if isinstance(node, ast.Attribute) else ""
 
 
-def items_of(node: ast.expr) -> list[ast.expr]:
+def list_items(node: ast.expr) -> list[ast.expr]:
     """The entries of a written tuple, list or set, and any other expression alone."""
     return node.elts if isinstance(node, ast.Tuple | ast.List | ast.Set) else [node]
 
@@ -123,7 +123,7 @@ def is_kind_name(node: ast.AST | None) -> bool:
     return isinstance(node, ast.Constant) and node.value in KIND_NAMES
 
 
-def scattered_fields(sources: Sequence[Source], names: Sequence[str] = ()) -> Iterator[str]:
+def find_scattered_fields(sources: Sequence[Source], names: Sequence[str] = ()) -> Iterator[str]:
     """Each field of toolkits that too many files name.
 
     Carriers, lattices and pegs have attributes of the same names, and some forms of values are called like a field. Of
@@ -136,20 +136,21 @@ def scattered_fields(sources: Sequence[Source], names: Sequence[str] = ()) -> It
     - a text in a tuple, a list, a set, or among the keys of a mapping, all of which are fields of toolkits;
     - a text that is compared with ``name``.
     """
-    wanted = set(names or field_names())
+    wanted = set(names or list_field_names())
     every = COMMON_WORDS | wanted
     places: dict[str, list[str]] = {}
     for source in sources:
         kinds = [
             node
             for node in ast.walk(source.tree)
-            if isinstance(node, ast.ClassDef) and "made_from_table" in map(last_name, node.decorator_list)
+            if isinstance(node, ast.ClassDef)
+            and "make_class_from_table" in map(find_last_name, node.decorator_list)
         ]
         in_kinds = {node for kind in kinds for node in ast.walk(kind)}
         found: set[str] = set()
         for node in ast.walk(source.tree):
             owners = HOLDERS | {"self"} if node in in_kinds else HOLDERS
-            found |= wanted & fields_named(node, owners, every)
+            found |= wanted & find_fields_named(node, owners, every)
         for name in found:
             places.setdefault(name, []).append(source.name)
     for name, files in sorted(places.items()):
@@ -157,14 +158,14 @@ def scattered_fields(sources: Sequence[Source], names: Sequence[str] = ()) -> It
             yield f"{len(files)} files name the field {name}: take it from its table ({', '.join(files)})."
 
 
-def field_names() -> tuple[str, ...]:
+def list_field_names() -> tuple[str, ...]:
     """The names of the fields of toolkits that are words of nothing else."""
     from workhold.fixels.kinds import TABLES
 
     return tuple(sorted({row.name for table in TABLES.values() for row in table.fields} - COMMON_WORDS))
 
 
-def fields_named(node: ast.AST, owners: set[str], every: set[str]) -> set[str]:
+def find_fields_named(node: ast.AST, owners: set[str], every: set[str]) -> set[str]:
     """The names of fields, and other words, by which a node of the syntax tree asks a toolkit or its data.
 
     Parameters
@@ -174,46 +175,50 @@ def fields_named(node: ast.AST, owners: set[str], every: set[str]) -> set[str]:
     every : the names of all fields.
     """
     match node:
-        case ast.Attribute(value=value, attr=name) if last_name(value) in owners:
+        case ast.Attribute(value=value, attr=name) if find_last_name(value) in owners:
             return {name}
-        case ast.Subscript(value=value, slice=key) if last_name(value) in HOLDERS | RECORDS:
-            return texts([key])
+        case ast.Subscript(value=value, slice=key) if find_last_name(value) in HOLDERS | RECORDS:
+            return collect_texts([key])
         case ast.Call():
-            return fields_in_call(node, owners)
-        case ast.Dict(keys=[_, *_] as keys) if texts(keys) <= every:
-            return texts(keys)
+            return find_fields_in_call(node, owners)
+        case ast.Dict(keys=[_, *_] as keys) if collect_texts(keys) <= every:
+            return collect_texts(keys)
         case ast.Tuple(elts=items) | ast.List(elts=items) | ast.Set(elts=items) if len(items) > 1:
-            return texts(items) if all(texts([one]) and texts([one]) <= every for one in items) else set()
-        case ast.Compare(left=left, comparators=others) if "name" in map(last_name, [left, *others]):
-            return texts([left, *others])
+            return (
+                collect_texts(items)
+                if all(collect_texts([one]) and collect_texts([one]) <= every for one in items)
+                else set()
+            )
+        case ast.Compare(left=left, comparators=others) if "name" in map(find_last_name, [left, *others]):
+            return collect_texts([left, *others])
     return set()
 
 
-def fields_in_call(call: ast.Call, owners: set[str]) -> set[str]:
+def find_fields_in_call(call: ast.Call, owners: set[str]) -> set[str]:
     """The names of fields, and other words, by which a call asks a toolkit or its data."""
     keywords = {one.arg or "" for one in call.keywords}
-    match last_name(call.func), call.args:
+    match find_last_name(call.func), call.args:
         case ("get" | "pop", [key, *_]) if (
-            last_name(getattr(call.func, "value", call.func)) in HOLDERS | RECORDS
+            find_last_name(getattr(call.func, "value", call.func)) in HOLDERS | RECORDS
         ):
-            return texts([key])
-        case "getattr", [owner, key, *_] if last_name(owner) in owners:
-            return texts([key])
+            return collect_texts([key])
+        case "getattr", [owner, key, *_] if find_last_name(owner) in owners:
+            return collect_texts([key])
         case (("ToolkitField" | "shown"), _):
-            return texts([*call.args, *(one.value for one in call.keywords if one.arg in REFERRING)])
-        case (("evolve" | "replace"), [owner, *_]) if last_name(owner) in owners:
+            return collect_texts([*call.args, *(one.value for one in call.keywords if one.arg in REFERRING)])
+        case (("evolve" | "replace"), [owner, *_]) if find_last_name(owner) in owners:
             return keywords
         case kind, _ if kind in KIND_CLASSES:
             return keywords
     return set()
 
 
-def texts(nodes: Iterable[ast.AST | None]) -> set[str]:
+def collect_texts(nodes: Iterable[ast.AST | None]) -> set[str]:
     """The texts among written expressions."""
     return {one.value for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)}
 
 
-def repeated_classes(sources: Sequence[Source]) -> Iterator[str]:
+def find_repeated_classes(sources: Sequence[Source]) -> Iterator[str]:
     """Each definition of a class whose name an earlier one has."""
     seen: dict[str, str] = {}
     for source in sources:
@@ -228,11 +233,11 @@ def repeated_classes(sources: Sequence[Source]) -> Iterator[str]:
 def main() -> int:
     """Says what does not hold; 1 where there is anything."""
     sys.path.insert(0, str(ROOT / "src"))
-    sources = sources_of(ROOT / "src" / "workhold")
+    sources = list_sources(ROOT / "src" / "workhold")
     offences = [
-        *lines_asking_for_kind(sources),
-        *scattered_fields(sources),
-        *repeated_classes(sources),
+        *find_lines_asking_for_kind(sources),
+        *find_scattered_fields(sources),
+        *find_repeated_classes(sources),
     ]
     sys.stdout.write("".join(f"{sentence}\n" for sentence in offences))
     return int(bool(offences))

@@ -31,12 +31,12 @@ def count(number: float | None) -> str:
     return f"{number:,.10g}"
 
 
-def power(number: float) -> str:
+def format_power(number: float) -> str:
     """A number as the sources write it, such as 1e6."""
     return f"{number:g}".replace("e+0", "e")
 
 
-def reader_row(one: FileLimits) -> str:
+def make_reader_row(one: FileLimits) -> str:
     """The row of a kind of file."""
     elements = (
         "none"
@@ -53,18 +53,18 @@ def reader_row(one: FileLimits) -> str:
     return f"| {one.what} | {size} | {elements}{deepest} | {seconds} |"
 
 
-def readers() -> str:
+def tabulate_readers() -> str:
     """What a file of every kind may ask for."""
     head = "| file | size | elements | processor time |\n|---|---|---|---|\n"
-    return head + "".join(f"{reader_row(one)}\n" for one in LIMITS.values())
+    return head + "".join(f"{make_reader_row(one)}\n" for one in LIMITS.values())
 
 
-def numbers() -> str:
+def tabulate_numbers() -> str:
     """How large numbers may be, and how long what is read."""
     rows = (
-        ("coordinates and lengths", f"{power(limits.MOST_LENGTH)} mm"),
-        ("the radius of an arc", f"{power(limits.MOST_RADIUS)} mm"),
-        ("a force; a moment", f"{power(limits.MOST_FORCE)} N; {power(limits.MOST_FORCE)} N mm"),
+        ("coordinates and lengths", f"{format_power(limits.MOST_LENGTH)} mm"),
+        ("the radius of an arc", f"{format_power(limits.MOST_RADIUS)} mm"),
+        ("a force; a moment", f"{format_power(limits.MOST_FORCE)} N; {format_power(limits.MOST_FORCE)} N mm"),
         ("a coefficient of friction", count(limits.MOST_FRICTION)),
         ("holes of a jaw or plate (columns times rows)", count(limits.MOST_HOLES)),
         ("holes and columns that are blocked", count(limits.MOST_BLOCKED)),
@@ -99,12 +99,12 @@ def numbers() -> str:
     return "| what | limit |\n|---|---|\n" + "".join(f"| {what} | {limit} |\n" for what, limit in rows)
 
 
-def filled(page: str) -> str:
+def fill_page(page: str) -> str:
     """A page with its places filled."""
-    made = {"readers": readers, "numbers": numbers}
+    made = {"readers": tabulate_readers, "numbers": tabulate_numbers}
     return PLACE.sub(lambda found: found[1] + made[found[2]]() + found[3], page)
 
 
 if __name__ == "__main__":
-    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    PAGE.write_text(fill_page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
     sys.stdout.write(f"{PAGE} is written.\n")

@@ -43,44 +43,48 @@ def on_files(files: Any, config: Any) -> Any:
 
 def on_page_markdown(markdown: str, **about: Any) -> str:
     """A page with its places filled."""
-    makers = {"workhold": every_name, "commands": every_command, "toolkits": every_toolkit}
+    makers = {
+        "workhold": describe_every_name,
+        "commands": describe_every_command,
+        "toolkits": describe_every_toolkit,
+    }
     return PLACE.sub(lambda found: makers[found[1]](), markdown)
 
 
-def every_name() -> str:
+def describe_every_name() -> str:
     """What is said of every public name: functions, then classes, then errors."""
     import workhold
 
     things = {name: getattr(workhold, name) for name in workhold.__all__}
-    order = sorted(things, key=lambda name: (kind_of(things[name]), name.lower()))
-    return "\n\n".join(documented(name, things[name]) for name in order)
+    order = sorted(things, key=lambda name: (classify_public_name(things[name]), name.lower()))
+    return "\n\n".join(describe_public_name(name, things[name]) for name in order)
 
 
-def every_toolkit() -> str:
+def describe_every_toolkit() -> str:
     """The fields of every kind of toolkit under the first name that people give it, a table each."""
     from workhold.fixels.fields import NAMES
-    from workhold.fixels.kinds import kind_of, table_of
+    from workhold.fixels.kinds import find_table, resolve_kind
 
     kinds: dict[str, str] = {}
     for name in NAMES:
-        kinds.setdefault(kind_of(name)[0], name)
+        kinds.setdefault(resolve_kind(name)[0], name)
     return "\n\n".join(
-        f"### `{name}`: {NAMES[name]}\n\n{table_of_fields(table_of(kind).fields)}"
+        f"### `{name}`: {NAMES[name]}\n\n{tabulate_fields(find_table(kind).fields)}"
         for kind, name in kinds.items()
     )
 
 
-def table_of_fields(rows: Any) -> str:
+def tabulate_fields(rows: Any) -> str:
     """The key and the option of each field, what is typed, its default and its help, as Markdown."""
     lines = ["| key in files | option | value | if left out | meaning |", "|---|---|---|---|---|"]
     for row in rows:
         words = row.help.replace("{option}", row.option).replace("|", "\\|")
         value = row.metavar.replace("|", "\\|")
-        lines.append(f"| `{row.name}` | `{row.option}` | `{value}` | {default_words(row)} | {words} |")
+        lines.append(f"| `{row.name}` | `{row.option}` | `{value}` | {describe_default(row)} | {words} |")
     return "\n".join(lines)
 
 
-def default_words(row: Any) -> str:
+def describe_default(row: Any) -> str:
     """What a field is where nobody gives it."""
     if row.is_required:
         return "must be given"
@@ -89,20 +93,24 @@ def default_words(row: Any) -> str:
     return f"`{row.default}`" if row.default not in (None, ()) else "none"
 
 
-def kind_of(thing: Any) -> int:
+def classify_public_name(thing: Any) -> int:
     """0 for a function, 1 for a class, 2 for an error."""
     return inspect.isclass(thing) + (inspect.isclass(thing) and issubclass(thing, Exception))
 
 
-def documented(name: str, thing: Any) -> str:
+def describe_public_name(name: str, thing: Any) -> str:
     """What is said of a public name, as Markdown."""
-    parts = [f"## `{name}` {{ #{name} }}", signature_of(name, thing, "workhold"), said(thing)]
+    parts = [
+        f"## `{name}` {{ #{name} }}",
+        format_signature(name, thing, "workhold"),
+        convert_docstring(thing),
+    ]
     if inspect.isclass(thing):
-        parts += [member(name, one, thing) for one in public_members(thing)]
+        parts += [describe_member(name, one, thing) for one in list_public_members(thing)]
     return "\n\n".join(part for part in parts if part)
 
 
-def public_members(kind: type) -> list[str]:
+def list_public_members(kind: type) -> list[str]:
     """The names of a class's own methods and properties that have something to say."""
     made = (property, classmethod, staticmethod)
     found = {name for name, one in vars(kind).items() if isinstance(one, made) or inspect.isfunction(one)}
@@ -111,7 +119,7 @@ def public_members(kind: type) -> list[str]:
     ]
 
 
-def member(kind: str, name: str, owner: type) -> str:
+def describe_member(kind: str, name: str, owner: type) -> str:
     """What is said of a method or property."""
     thing = inspect.getattr_static(owner, name)
     if isinstance(thing, property):
@@ -119,47 +127,55 @@ def member(kind: str, name: str, owner: type) -> str:
     else:
         bound = getattr(owner, name)
         holder = kind if isinstance(thing, classmethod | staticmethod) else kind.lower()
-        head, called = f"### `{name}()`", signature_of(name, bound, holder)
+        head, called = f"### `{name}()`", format_signature(name, bound, holder)
     anchor = f" {{ #{kind.lower()}-{name} data-toc-label='{name}' }}"
-    return "\n\n".join(part for part in (head + anchor, called, said(getattr(owner, name))) if part)
+    return "\n\n".join(
+        part for part in (head + anchor, called, convert_docstring(getattr(owner, name))) if part
+    )
 
 
-def signature_of(name: str, thing: Any, holder: str) -> str:
+def format_signature(name: str, thing: Any, holder: str) -> str:
     """How something is called, a parameter on a line where the line would be long."""
     if inspect.isclass(thing) and issubclass(thing, BaseException):
         return ""
     signature = inspect.signature(thing)
     own = [one for one in signature.parameters.values() if one.name != "self"]
-    words = [plain(str(one)) for one in own]
+    words = [simplify_signature(str(one)) for one in own]
     result = signature.return_annotation
-    arrow = "" if inspect.isclass(thing) or result is inspect.Signature.empty else f" -> {plain(str(result))}"
+    arrow = (
+        ""
+        if inspect.isclass(thing) or result is inspect.Signature.empty
+        else f" -> {simplify_signature(str(result))}"
+    )
     line = f"{holder}.{name}({', '.join(words)}){arrow}"
     if len(line) > int(COLUMNS):
         # A star or a slash of its own is a word of the signature too.
-        inner = plain(str(signature.replace(parameters=own, return_annotation=inspect.Signature.empty)))
+        inner = simplify_signature(
+            str(signature.replace(parameters=own, return_annotation=inspect.Signature.empty))
+        )
         broken = re.sub(r", (?=[*/\w]+(?:: |,|$|=))", ",\n    ", inner[1:-1])
         line = f"{holder}.{name}(\n    {broken},\n){arrow}"
     return f"```python\n{line}\n```"
 
 
-def plain(words: str) -> str:
+def simplify_signature(words: str) -> str:
     """A signature without the modules of its types and without what stands in quotes for types."""
     words = re.sub(r"(?:[a-z_]\w*\.)+(?=[A-Z])", "", words).replace("Optional[ForwardRef(Any)]", "Any")
     return re.sub(r"<factory>|NOTHING", "...", words).replace("'", "")
 
 
-def said(thing: Any) -> str:
+def convert_docstring(thing: Any) -> str:
     """A docstring as Markdown."""
     text = inspect.getdoc(thing) or ""
     head, *sections = SECTION.split(text)
-    out = [inline(head.strip())]
+    out = [convert_inline_marks(head.strip())]
     for title, content in zip(sections[::2], sections[1::2], strict=True):
-        body = examples(content) if title == "Examples" else entries(content, title in OF_NAMES)
+        body = convert_examples(content) if title == "Examples" else list_entries(content, title in OF_NAMES)
         out.append(f"**{title}**\n\n{body}")
     return "\n\n".join(out)
 
 
-def entries(content: str, named: bool) -> str:
+def list_entries(content: str, named: bool) -> str:
     """The entries of a section as a list: ``name : what it means``, or a type with what is said of it below."""
     out: list[str] = []
     for line in content.strip().splitlines():
@@ -167,24 +183,26 @@ def entries(content: str, named: bool) -> str:
             name, colon, words = line.partition(" : ")
             is_entry = bool(colon) if named else True
             out.append(
-                f"- `{name}`{': ' + inline(words) if colon else ''}" if is_entry else f"- {inline(line)}"
+                f"- `{name}`{': ' + convert_inline_marks(words) if colon else ''}"
+                if is_entry
+                else f"- {convert_inline_marks(line)}"
             )
         else:
-            out[-1] += ("" if out[-1].endswith((":", " ")) else " " if ": " in out[-1] else ": ") + inline(
-                line.strip()
-            )
+            out[-1] += (
+                "" if out[-1].endswith((":", " ")) else " " if ": " in out[-1] else ": "
+            ) + convert_inline_marks(line.strip())
     return "\n".join(out)
 
 
-def examples(content: str) -> str:
+def convert_examples(content: str) -> str:
     """What stands in a session of Python as such, words between as words."""
     out = []
     for block in re.split(r"\n\n+", content.strip()):
-        out.append(f"```pycon\n{block}\n```" if block.startswith(">>>") else inline(block))
+        out.append(f"```pycon\n{block}\n```" if block.startswith(">>>") else convert_inline_marks(block))
     return "\n\n".join(out)
 
 
-def inline(words: str) -> str:
+def convert_inline_marks(words: str) -> str:
     """Marks of reStructuredText as those of Markdown; a session of Python in the middle of words as one."""
     words = re.sub(r":\w+:`~?([^`]+)`", r"`\1`", words.replace("``", "`"))
     return re.sub(
@@ -192,18 +210,18 @@ def inline(words: str) -> str:
     )
 
 
-def every_command() -> str:
+def describe_every_command() -> str:
     """The help of every command as it stands on a terminal."""
     from workhold.cli.main import COMMANDS
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return "\n\n".join(
             f"## `{name}`\n\n```text\n{words}\n```"
-            for name, words in zip(COMMANDS, pool.map(help_of, COMMANDS), strict=True)
+            for name, words in zip(COMMANDS, pool.map(read_help, COMMANDS), strict=True)
         )
 
 
-def help_of(name: str) -> str:
+def read_help(name: str) -> str:
     """What ``workhold NAME --help`` says."""
     environment = {**os.environ, "COLUMNS": COLUMNS, "NO_COLOR": "1"}
     program = "import sys; sys.argv[0] = 'workhold'; from workhold.__main__ import run; run()"

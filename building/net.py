@@ -186,7 +186,7 @@ PRINTED: dict[str, list[str]] = {
 }
 
 
-def digest(content: bytes) -> str:
+def compute_hash(content: bytes) -> str:
     """The hash of some content, without the times of a search, which differ from run to run."""
     text = re.sub(rb'"seconds": ?[0-9.e-]+|\$TDU?UPDATE\s+40\s+[0-9.]+', b"", content)
     return hashlib.sha256(text).hexdigest()[:24]
@@ -208,27 +208,27 @@ def run(*arguments: str) -> tuple[int, bytes]:
     ).encode()
 
 
-def outputs(folder: Path) -> Iterator[tuple[str, str]]:
+def list_outputs(folder: Path) -> Iterator[tuple[str, str]]:
     """The name and the hash of every output."""
     for name, words in PRINTED.items():
         code, text = run(*words)
-        yield f"printed/{name}", f"{code} {digest(text)}"
+        yield f"printed/{name}", f"{code} {compute_hash(text)}"
     for name, words in QUERIES.items():
         path = folder / f"{name}.json"
         code, text = run("design", *words, "--out", str(path))
-        yield f"design/{name}", f"{code} {digest(text)}"
+        yield f"design/{name}", f"{code} {compute_hash(text)}"
         if path.exists():
-            yield f"result/{name}", digest(path.read_bytes())
+            yield f"result/{name}", compute_hash(path.read_bytes())
     for name in SHOWN:
-        yield from files_of(name, folder)
+        yield from list_fixture_files(name, folder)
     for name in SEATED:
         code, text = run("seat", str(folder / f"{name}.json"), "1", "--json")
-        yield f"seat/{name}", f"{code} {digest(text)}"
-    yield from families(folder)
-    yield from page()
+        yield f"seat/{name}", f"{code} {compute_hash(text)}"
+    yield from list_family_outputs(folder)
+    yield from list_page_outputs()
 
 
-def files_of(name: str, folder: Path) -> Iterator[tuple[str, str]]:
+def list_fixture_files(name: str, folder: Path) -> Iterator[tuple[str, str]]:
     """What a shop takes away of the first fixture of a result."""
     result = str(folder / f"{name}.json")
     for ending in ("svg", "dxf", "step"):
@@ -240,19 +240,19 @@ def files_of(name: str, folder: Path) -> Iterator[tuple[str, str]]:
         )
         code, text = run(*command)
         content = path.read_bytes() if path.exists() else text
-        yield f"{ending}/{name}", f"{code} {digest(content)}"
+        yield f"{ending}/{name}", f"{code} {compute_hash(content)}"
     code, _ = run("sheet", result, "1", "-o", str(folder / f"{name}.pdf"), "--jaw-force", "2000")
-    yield f"pdf/{name}", f"{code} {digest((folder / f'{name}.pdf').read_bytes())}"
+    yield f"pdf/{name}", f"{code} {compute_hash((folder / f'{name}.pdf').read_bytes())}"
     for words in (["show", result, "1"], ["show", result, "1", "--json"], ["verify", result]):
         code, text = run(*words)
-        yield f"{' '.join(words[0:1] + words[3:])}/{name}", f"{code} {digest(text)}"
+        yield f"{' '.join(words[0:1] + words[3:])}/{name}", f"{code} {compute_hash(text)}"
     for ending in ("npz", "csv"):
         path = folder / f"{name}.{ending}"
         run("convert", result, str(path))
-        yield f"{ending}/{name}", digest(path.read_bytes())
+        yield f"{ending}/{name}", compute_hash(path.read_bytes())
 
 
-def families(folder: Path) -> Iterator[tuple[str, str]]:
+def list_family_outputs(folder: Path) -> Iterator[tuple[str, str]]:
     """A family, copies and the plates of a vise."""
     drawings = folder / "drawings"
     drawings.mkdir()
@@ -261,20 +261,20 @@ def families(folder: Path) -> Iterator[tuple[str, str]]:
     for toolkit in ("plate-20mm", "clamp-plate-20mm", "fence-20mm"):
         out = folder / f"family-{toolkit}.json"
         code, _ = run("family", str(drawings), "--toolkit", toolkit, "--out", str(out))
-        yield f"family/{toolkit}", f"{code} {digest(out.read_bytes()) if out.exists() else ''}"
+        yield f"family/{toolkit}", f"{code} {compute_hash(out.read_bytes()) if out.exists() else ''}"
     for name in ("plate-travel", "fence-direction"):
         code, text = run("copies", str(folder / f"{name}.json"), "1", "--json")
-        yield f"copies/{name}", f"{code} {digest(text)}"
+        yield f"copies/{name}", f"{code} {compute_hash(text)}"
     path = folder / "drill.dxf"
     code, text = run("drill", "--toolkit", "plate-20mm", "--rows", "6", "--blocked", "L-B3", "-o", str(path))
-    yield "drill", f"{code} {digest(path.read_bytes() if path.exists() else text)}"
+    yield "drill", f"{code} {compute_hash(path.read_bytes() if path.exists() else text)}"
 
 
-def page() -> Iterator[tuple[str, str]]:
+def list_page_outputs() -> Iterator[tuple[str, str]]:
     """What the page is told before anything is searched, and the server's own description of itself."""
-    from workhold.web.toolkits import kinds_answer
+    from workhold.web.toolkits import describe_kinds
 
-    yield "page/kinds", digest(json.dumps(kinds_answer(), sort_keys=True).encode())
+    yield "page/kinds", compute_hash(json.dumps(describe_kinds(), sort_keys=True).encode())
 
 
 def main() -> int:
@@ -288,7 +288,7 @@ def main() -> int:
         for name in (BRACKET, RECTANGLE, NEMA):
             shutil.copy(EXAMPLES / name, folder)
         os.chdir(folder)
-        now = dict(outputs(Path()))
+        now = dict(list_outputs(Path()))
         os.chdir(ROOT)
     if sys.argv[1] == "record":
         file.write_text(json.dumps(now, indent=1) + "\n", encoding="utf-8")

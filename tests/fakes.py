@@ -46,7 +46,7 @@ def fake_result(count: int, seed: int = 0, **changes: object) -> Result:
         force=null_vector / random.uniform(0.1, 0.5, (count, 1)),
         quality=fake_quality(null_vector, random),
     )
-    counts = vise.arrangements_counted(arrangement)
+    counts = vise.count_arrangements(arrangement)
     result = Result(
         Query(plate(), vise, rank_by="closure_margin"),
         table,

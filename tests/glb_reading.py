@@ -11,7 +11,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.files.glb import bodies_glb
+from workhold.files.glb import make_bodies_glb
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import BodySizes, list_fixture_bodies
 from workhold.model.fixture import Fixture
@@ -129,4 +129,4 @@ def fixture_glb(
 ) -> bytes:
     """The bytes of a fixture's GLB file; the usual heights if no sizes are given."""
     bodies = list_fixture_bodies(fixture, workpiece, toolkit, sizes)
-    return bodies_glb(bodies, f"{bodies[0].name} set-up")
+    return make_bodies_glb(bodies, f"{bodies[0].name} set-up")

@@ -13,7 +13,7 @@ from workhold.verification.contacts import BallPose
 from workhold.verification.judging import Rank, rank
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.undecided import undecided_faults
+from workhold.verification.undecided import find_undecided_faults
 
 
 def rules_in(toolkit: Toolkit) -> ToolkitRules:
@@ -23,7 +23,7 @@ def rules_in(toolkit: Toolkit) -> ToolkitRules:
 
 def posed(*travels: float) -> BallPose:
     """A part that lies as it is drawn, and how far what moves has travelled."""
-    return BallPose.of(arb(0), arb(0), arb(0), *map(arb, travels))
+    return BallPose.from_turn_and_place(arb(0), arb(0), arb(0), *map(arb, travels))
 
 
 def known_in(toolkit: Toolkit) -> KnownFixtures:
@@ -38,4 +38,4 @@ def place_in_order(fixture: Fixture, toolkit: Toolkit) -> Rank:
 
 def faults_of(entries: Sequence[Undecided], query: Query) -> list[str]:
     """What is wrong with undecided cases."""
-    return list(undecided_faults(entries, query))
+    return list(find_undecided_faults(entries, query))

@@ -18,7 +18,7 @@ def run_here(module: str, content: bytes, options: Mapping[str, Any], what: str)
     """What ``files.apart.run_apart`` returns, by way of JSON as well, so that nothing is passed that JSON does not hold."""
     reader = import_module(module)
     reader.prepare()
-    return json.loads(json.dumps(reader.plain(content, **json.loads(json.dumps(dict(options))))))
+    return json.loads(json.dumps(reader.read_as_plain_data(content, **json.loads(json.dumps(dict(options))))))
 
 
 def read_here() -> None:
@@ -28,9 +28,9 @@ def read_here() -> None:
 
 
 def work_reading_here(connection: Connection, kind: str, memory_bytes: int) -> None:
-    """``web.tasks.work``, the main function of a server's worker, in one that reads without another process."""
-    from workhold.web.tasks import work
+    """``web.tasks.run_worker``, the main function of a server's worker, in one that reads without another process."""
+    from workhold.web.tasks import run_worker
 
     if kind == "desk":
         read_here()
-    work(connection, kind, memory_bytes)
+    run_worker(connection, kind, memory_bytes)

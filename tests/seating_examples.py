@@ -100,7 +100,7 @@ class Obstacle:
         out = cls(part, fixture, 0.0)
         pegs = [peg for peg in fixture.pegs if not peg.is_on_wall]
         out.has_wall = len(pegs) < len(fixture.pegs)
-        carriers = [toolkit.carrier(peg.carrier) for peg in pegs]
+        carriers = [toolkit.find_carrier(peg.carrier) for peg in pegs]
         out.radii = np.array([carrier.peg_radius for carrier in carriers])
         out.ways = np.array([carrier.travel.unit if carrier.travel else (0.0, 0.0) for carrier in carriers])
         out.pegs = np.array([[peg.x, peg.y] for peg in pegs]) - out.ways * fixture.travel

@@ -26,7 +26,7 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fused, prism, upright
 
-from workhold.files.step.library import along, bounding_box
+from workhold.files.step.library import compute_bounding_box, turn_axis_up
 
 __all__ = ["EXAMPLES", "SolidExample"]
 
@@ -172,7 +172,7 @@ def extrusion() -> Any:
     side = [(0, 0), (15, 0), (15, 3), (10, 3), (10, 9), (30, 9), (30, 3), (25, 3), (25, 0), (40, 0)]
     side += [(40, 40), (25, 40), (25, 37), (30, 37), (30, 31), (10, 31), (10, 37), (15, 37), (15, 40)]
     profile = polygon([*side, (0, 40)], 90)
-    lying = along(profile, "x")
+    lying = turn_axis_up(profile, "x")
     low = [float(value) for value in corner(lying)]
     step = box(300, 300, 12, (low[0] + 40 + 30, low[1] - 5, low[2] + 28))
     return cut(lying, box(20, 300, 100, (low[0] - 5, low[1] - 5, low[2] - 5)), step)
@@ -180,7 +180,7 @@ def extrusion() -> Any:
 
 def corner(shape: Any) -> tuple[float, float, float]:
     """The lowest corner of a shape's bounding box."""
-    return bounding_box(shape)[0]
+    return compute_bounding_box(shape)[0]
 
 
 def lying_shaft() -> Any:
@@ -204,7 +204,7 @@ def ribbed() -> Any:
     """An angle with an upright leg, two ribs and holes in both legs."""
     angle = fused(box(70, 60, 10), box(70, 10, 50))
     for x in (12, 50):
-        rib = along(polygon([(0, 0), (40, 0), (0, 30)], 8), "y")
+        rib = turn_axis_up(polygon([(0, 0), (40, 0), (0, 30)], 8), "y")
         low, move = corner(rib), gp_Trsf()
         move.SetTranslation(gp_Vec(x - low[0], 10 - low[1], 10 - low[2]))
         angle = fused(angle, rib.Moved(TopLoc_Location(move)))
@@ -242,7 +242,7 @@ def turned() -> Any:
 def dovetail() -> Any:
     """A slide with a dovetail below and a slot above."""
     across = [(0.0, 0.0), (50.0, 0.0), (44.0, 12.0), (60.0, 12.0), (60.0, 26.0), (-10.0, 26.0), (-10.0, 12.0)]
-    return cut(along(polygon([*across, (6.0, 12.0)], 70), "y"), cylinder(4, 200, (30, 25, -100)))
+    return cut(turn_axis_up(polygon([*across, (6.0, 12.0)], 70), "y"), cylinder(4, 200, (30, 25, -100)))
 
 
 def rim() -> Any:

@@ -26,7 +26,7 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt
 from step_shapes import cylinder
 
 from workhold import Fixture, Workpiece
-from workhold.files.step.library import sub_shapes
+from workhold.files.step.library import list_sub_shapes
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Segment, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
@@ -58,7 +58,7 @@ def section_points(shape: Any, z: float, along_edge: int = 9) -> Array:
     cut.Approximation(False)
     cut.Build()
     points = []
-    for edge in sub_shapes(cut.Shape(), "EDGE"):
+    for edge in list_sub_shapes(cut.Shape(), "EDGE"):
         curve = BRepAdaptor_Curve(edge)
         for t in np.linspace(curve.FirstParameter(), curve.LastParameter(), along_edge):
             value = curve.Value(float(t))
@@ -130,7 +130,7 @@ def fixture_faults(shape: Any, part: Workpiece, fixture: Fixture, toolkit: Any) 
     assert part.solid is not None
     room = part.solid.head_room
     for peg in fixture.pegs:
-        low, top = toolkit.carrier(peg.carrier).heights or (0.0, part.solid.peg_height)
+        low, top = toolkit.find_carrier(peg.carrier).heights or (0.0, part.solid.peg_height)
         face = next(one for one in part.numbered.faces if peg.face in one.segments)
         band = part.numbered.bands[face.number]
         if band is None:
@@ -145,7 +145,7 @@ def fixture_faults(shape: Any, part: Workpiece, fixture: Fixture, toolkit: Any) 
             assert low == 0.0
         else:
             radius = hypot(x - px, y - py)
-            own = toolkit.carrier(peg.carrier).peg_radius
+            own = toolkit.find_carrier(peg.carrier).peg_radius
             if abs(radius - own) > NEAR:
                 yield f"{peg.hole} stands {radius - own:.3g} mm off its face"
             body = cylinder(own, top - low, (x, y, low))

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from workhold import archive
-from workhold.archive import ArchiveWriter, Column, is_archive, mapped_archive
+from workhold.archive import ArchiveWriter, Column, is_archive, map_archive
 from workhold.errors import InputError
 
 COLUMNS = {"a": Column("<f8", (2,)), "b": Column("|i1"), "c": Column("<i4", (4,))}
@@ -44,7 +44,7 @@ def test_numpy_and_zip_open_what_is_written(tmp_path: Path, rows: int) -> None:
     assert is_archive(path) and path.read_bytes().endswith(b"mark")
     assert zipfile.ZipFile(path).testzip() is None
     loaded = np.load(path, allow_pickle=False)
-    text, mapped = mapped_archive(path, COLUMNS, "head.json", whole=True)
+    text, mapped = map_archive(path, COLUMNS, "head.json", whole=True)
     assert text == TEXT == loaded["head.json"].decode()
     for name, values in zip(COLUMNS, columns_of(rows), strict=True):
         np.testing.assert_array_equal(loaded[name], values)
@@ -61,7 +61,7 @@ def test_fewer_rows_than_there_is_room_for(tmp_path: Path, rows: int, room: int)
         writer.close("head.json", TEXT, "mark")
     assert zipfile.ZipFile(tmp_path / "a.npz").testzip() is None
     loaded = np.load(tmp_path / "a.npz", allow_pickle=False)
-    text, mapped = mapped_archive(tmp_path / "a.npz", COLUMNS, "head.json", whole=True)
+    text, mapped = map_archive(tmp_path / "a.npz", COLUMNS, "head.json", whole=True)
     assert text == TEXT
     for name, values in zip(COLUMNS, columns_of(rows), strict=True):
         np.testing.assert_array_equal(loaded[name], values)
@@ -78,9 +78,9 @@ def test_opening_reads_no_column(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     content = bytearray(path.read_bytes())
     content[8000] ^= 1
     path.write_bytes(content)
-    mapped_archive(path, COLUMNS, "head.json")
+    map_archive(path, COLUMNS, "head.json")
     with pytest.raises(InputError, match=r"a\.npy has been changed since it was written"):
-        mapped_archive(path, COLUMNS, "head.json", whole=True)
+        map_archive(path, COLUMNS, "head.json", whole=True)
 
 
 def test_every_truncation_is_refused(tmp_path: Path) -> None:
@@ -88,7 +88,7 @@ def test_every_truncation_is_refused(tmp_path: Path) -> None:
     for length in range(4, len(content) - 4, 13):
         (tmp_path / "t.npz").write_bytes(content[:length])
         with pytest.raises(InputError):
-            mapped_archive(tmp_path / "t.npz", COLUMNS, "head.json")
+            map_archive(tmp_path / "t.npz", COLUMNS, "head.json")
 
 
 def test_damaged_bytes_give_the_same_columns_or_one_sentence(tmp_path: Path) -> None:
@@ -100,7 +100,7 @@ def test_damaged_bytes_give_the_same_columns_or_one_sentence(tmp_path: Path) -> 
             damaged[random.randrange(len(damaged))] = random.choice([0, 1, 0x7F, 0xFF, random.randrange(256)])
         (tmp_path / "t.npz").write_bytes(damaged)
         try:
-            text, mapped = mapped_archive(tmp_path / "t.npz", COLUMNS, "head.json")
+            text, mapped = map_archive(tmp_path / "t.npz", COLUMNS, "head.json")
         except InputError as error:
             refused += 1
             assert "\n" not in str(error) and str(error).endswith(".")
@@ -128,7 +128,7 @@ def zipped(path: Path, members: list[tuple[str, bytes]], kind: int = zipfile.ZIP
 
 def test_an_archive_of_another_program_is_read(tmp_path: Path) -> None:
     members = [("more", b"x"), *GOOD.items(), ("head.json", TEXT.encode())]
-    _, mapped = mapped_archive(zipped(tmp_path / "a.npz", members), COLUMNS, "head.json", whole=True)
+    _, mapped = map_archive(zipped(tmp_path / "a.npz", members), COLUMNS, "head.json", whole=True)
     np.testing.assert_array_equal(mapped["a"], columns_of(6)[0])
 
 
@@ -162,19 +162,19 @@ def test_what_is_not_as_it_must_be_is_refused(
 ) -> None:
     path = zipped(tmp_path / "a.npz", change([*GOOD.items(), ("head.json", TEXT.encode())]))
     with pytest.raises(InputError, match=message):
-        mapped_archive(path, COLUMNS, "head.json")
+        map_archive(path, COLUMNS, "head.json")
 
 
 def test_packed_members_are_refused_and_never_unpacked(tmp_path: Path) -> None:
     path = zipped(tmp_path / "a.npz", [*GOOD.items(), ("head.json", b" " * 10_000_000)], zipfile.ZIP_DEFLATED)
     with pytest.raises(InputError, match="is packed"):
-        mapped_archive(path, COLUMNS, "head.json")
+        map_archive(path, COLUMNS, "head.json")
 
 
 def test_a_text_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(archive, "MOST_TEXT", len(TEXT))
     with pytest.raises(InputError, match=r"its head\.json is too large"):
-        mapped_archive(written(tmp_path / "a.npz", 3), COLUMNS, "head.json")
+        map_archive(written(tmp_path / "a.npz", 3), COLUMNS, "head.json")
 
 
 def test_members_that_overlap_are_refused(tmp_path: Path) -> None:
@@ -189,4 +189,4 @@ def test_members_that_overlap_are_refused(tmp_path: Path) -> None:
         file.filelist.append(again)
         file._didModify = True  # type: ignore[attr-defined]
     with pytest.raises(InputError, match="its members overlap"):
-        mapped_archive(path, {name[0]: column for name, column in names.items()}, "head.json")
+        map_archive(path, {name[0]: column for name, column in names.items()}, "head.json")

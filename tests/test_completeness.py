@@ -15,8 +15,8 @@ import pytest
 
 from workhold import Query, Result, Vise, Workpiece, answer, load, verify
 from workhold.algebra import find_fixtures_by_algebra
-from workhold.completeness import other_entries
-from workhold.files.result.writer import notes_entry, write_result
+from workhold.completeness import find_other_entries
+from workhold.files.result.writer import make_notes_entry, write_result
 from workhold.model.notes import KeptBest, Stopped
 from workhold.model.search_report import Proof, Undecided
 from workhold.search.seated import answer_with_seating
@@ -108,7 +108,7 @@ def test_more_found_than_there_are_is_no_part(whole: Result, tmp_path: Path) -> 
     def more(data: dict[str, Any]) -> None:
         data["found"]["I"] = data["distinct"]["I"] = every + 1
         data["proof"].update(candidates=9_999, verified=9_999, discarded_by_bound=0)
-        data |= notes_entry([Stopped(1.5), KeptBest(every + 1 + data["found"]["II"], 40)])
+        data |= make_notes_entry([Stopped(1.5), KeptBest(every + 1 + data["found"]["II"], 40)])
 
     outcome = compared(cut_short(whole, 40), tmp_path, more)
     assert outcome.faults == (f"found says {every + 1} for I, and there are {every} in all",)
@@ -122,8 +122,8 @@ def test_undecided_orientations_go_round(whole: Result) -> None:
         entry = Undecided("I", (0, 1, 2, 3), (0, 1, 0, 1), (0, 0, 1, 1), theta, "its rows are parallel", 1e-9)
         return Proof(1, 1, 0, 0, 1, (entry,))
 
-    assert not list(other_entries(named(360 - 1e-9), named(1e-9)))
-    assert len(list(other_entries(named(0.5), named(0.6)))) == 1
+    assert not list(find_other_entries(named(360 - 1e-9), named(1e-9)))
+    assert len(list(find_other_entries(named(0.5), named(0.6)))) == 1
 
 
 @pytest.mark.thorough

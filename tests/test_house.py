@@ -75,13 +75,15 @@ NOT_NAMING = (
 
 
 def asked(text: str, name: str = "drawing/some.py") -> list[str]:
-    return list(house.lines_asking_for_kind([Source(name, text)]))
+    return list(house.find_lines_asking_for_kind([Source(name, text)]))
 
 
 def scattered(text: str, files: int) -> list[str]:
     """What is said of a text that stands in so many files."""
     sources = [Source(f"drawing/{number}.py", text) for number in range(files)]
-    return [one for one in house.scattered_fields(sources, ["row_offset", "pitch"]) if "row_offset" in one]
+    return [
+        one for one in house.find_scattered_fields(sources, ["row_offset", "pitch"]) if "row_offset" in one
+    ]
 
 
 def test_a_line_that_asks_for_the_kind_is_found_once() -> None:
@@ -100,7 +102,7 @@ def test_a_field_that_too_many_files_name_is_found() -> None:
     most = house.MOST_FILES_OF_A_FIELD
     assert [text for text in NAMING if scattered(text, most) or len(scattered(text, most + 1)) != 1] == []
     assert [text for text in NOT_NAMING if scattered(text, most + 1)] == []
-    names = set(house.field_names())
+    names = set(house.list_field_names())
     assert {"row_offset", "wall_offset", "peg_radius", "max_opening"} <= names
     assert not house.COMMON_WORDS & names
 
@@ -109,5 +111,5 @@ def test_a_class_name_used_again_is_found() -> None:
     """Unless it is one of those that are named."""
     first = Source("a/one.py", "class Box: pass\nclass Lid: pass\nclass Edge: pass")
     second = Source("b/two.py", "\nclass Box: pass\nclass Edge: pass")
-    (found,) = house.repeated_classes([first, second])
+    (found,) = house.find_repeated_classes([first, second])
     assert found.startswith("b/two.py:2 has a class Box like a/one.py:1")

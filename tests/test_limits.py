@@ -18,14 +18,14 @@ import numpy as np
 import pytest
 
 from workhold import Vise, Workpiece, answer, limits, load
-from workhold.cli.values import optional_force
-from workhold.errors import InputError, causes_of, lacks_memory
+from workhold.cli.values import read_optional_force
+from workhold.errors import InputError, lacks_memory, list_causes
 from workhold.files.part.load import read_workpiece
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Tolerance
 from workhold.statics.loads import load_cases
-from workhold.web.worker import said_of
+from workhold.web.worker import explain_task_error
 
 Loops = list[list[list[float]]]
 PLATE: list[list[float]] = [[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]
@@ -68,15 +68,15 @@ from workhold.errors import InputError, lacks_memory
 from workhold.model.requirements import Load
 from workhold.model.query import Query
 from workhold.model.requirements import Tolerance
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 from workhold.statics.loads import load_cases
-from workhold.files.input_forms import checked_toolkit
-from workhold.files.toolkit_file import described_toolkit
+from workhold.files.input_forms import check_toolkit_entries
+from workhold.files.toolkit_file import make_described_toolkit
 
 for searched, loops, vise in json.load(sys.stdin):
     try:
         part = Workpiece.from_loops("part", loops)
-        held = described_toolkit("vise", checked_toolkit({"unit": "mm", **vise})).toolkit
+        held = make_described_toolkit("vise", check_toolkit_entries({"unit": "mm", **vise})).toolkit
         print(len(design(part, held)) if searched else Problem.of(Query(part, held)))
     except InputError as error:
         print(error)
@@ -171,11 +171,11 @@ def test_the_causes_of_an_error_end_though_it_is_its_own() -> None:
     """Each is told once; what was being handled counts where that is asked for and nothing else is said."""
     first, second, third = ValueError("1"), ValueError("2"), ValueError("3")
     first.__cause__, second.__context__, third.__cause__ = second, third, first
-    assert list(causes_of(None)) == []
-    assert list(causes_of(first)) == [first, second]
-    assert list(causes_of(first, or_context=True)) == [first, second, third]
+    assert list(list_causes(None)) == []
+    assert list(list_causes(first)) == [first, second]
+    assert list(list_causes(first, or_context=True)) == [first, second, third]
     second.__cause__ = second
-    assert list(causes_of(first, or_context=True)) == [first, second]
+    assert list(list_causes(first, or_context=True)) == [first, second]
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_the_causes_of_an_error_end_though_it_is_its_own() -> None:
 def test_too_little_memory_is_known_by_what_libraries_say(error: Exception, lacks: bool) -> None:
     """On the command line, and to a client of the server, which is told no more."""
     assert lacks_memory(error) is lacks
-    assert said_of(error, 5 << 20).startswith("This needs more than the 5 MiB of memory") is lacks
+    assert explain_task_error(error, 5 << 20).startswith("This needs more than the 5 MiB of memory") is lacks
 
 
 @pytest.mark.parametrize(
@@ -213,8 +213,8 @@ def test_too_little_memory_is_known_by_what_libraries_say(error: Exception, lack
         (lambda: Query(load("widget"), Vise(**VISE), jaw_force=1e300), "jaw force 1e+300 is beyond 1e+09 N"),  # type: ignore[arg-type]
         (lambda: load_cases_of(jaw_force=1e300), "jaw force 1e+300 is beyond 1e+09 N"),
         (lambda: load_cases_of(friction=1e300), "friction 1e+300 is beyond 100: give the coefficient"),
-        (lambda: optional_force("--jaw-force", "1e9kN"), "--jaw-force 1e+12 is beyond 1e+09 N"),
-        (lambda: thread_count(1_001), "1,001 threads are more than the 1,000"),
+        (lambda: read_optional_force("--jaw-force", "1e9kN"), "--jaw-force 1e+12 is beyond 1e+09 N"),
+        (lambda: choose_thread_count(1_001), "1,001 threads are more than the 1,000"),
     ],
 )
 def test_numbers_whose_products_are_none_are_refused(asked: Callable[[], object], words: str) -> None:
@@ -244,4 +244,4 @@ def test_the_page_of_limits_says_what_the_code_enforces() -> None:
 
     page = limits_page.PAGE.read_text(encoding="utf-8")
     assert limits_page.PLACE.findall(page)
-    assert limits_page.filled(page) == page
+    assert limits_page.fill_page(page) == page

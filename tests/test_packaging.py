@@ -152,11 +152,11 @@ def test_a_wheel_of_what_was_built_needs_no_compiler(
     monkeypatch.setenv("WORKHOLD_WHEEL", "built")
     needed = " ".join(backend.get_requires_for_build_wheel())
     assert "numba" not in needed
-    monkeypatch.setattr(backend, "are_built", lambda: False)
+    monkeypatch.setattr(backend, "are_libraries_built", lambda: False)
     with pytest.raises(SystemExit, match="do not fit these sources"):
         backend.build_wheel("dist")
     assert made == []
-    monkeypatch.setattr(backend, "are_built", lambda: True)
+    monkeypatch.setattr(backend, "are_libraries_built", lambda: True)
     backend.build_wheel("dist")
     assert len(made) == 2
 

@@ -163,5 +163,5 @@ def test_a_fixture_taken_along_takes_no_more_than_itself() -> None:
     again = pickle.loads(pickle.dumps(one))
     assert len(pickle.dumps(one)) < len(pickle.dumps(many)) / 10
     assert again.listing.rank == 8 and again.listing.count == len(many)
-    assert again.listing.others == many.table.same_holes(7) == one.listing.others
+    assert again.listing.others == many.table.count_in_same_holes(7) == one.listing.others
     assert again.draw() == one.draw()

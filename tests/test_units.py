@@ -9,72 +9,88 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold.errors import InputError
-from workhold.units import INCH, MILLIMETRE, unit_named
+from workhold.units import INCH, MILLIMETRE, find_unit
 
 
 @pytest.mark.parametrize(
-    "unit", [MILLIMETRE, INCH, unit_named("cm"), unit_named("m")], ids=lambda unit: unit.name
+    "unit", [MILLIMETRE, INCH, find_unit("cm"), find_unit("m")], ids=lambda unit: unit.name
 )
 @given(st.floats(-5000, 5000))
 def test_numbers_are_right_to_half_their_last_digit(unit, length):
     """Every unit shows a length to 5 µm or better, as a fixed number of decimals or without its idle zeros."""
-    for text in (unit.number(length), unit.figure(length)):
+    for text in (unit.number(length), unit.format_short_length(length)):
         assert float(text) * unit.millimetres == pytest.approx(length, abs=0.005)
     assert len(unit.number(length).partition(".")[2]) == unit.decimals
-    assert unit.text(length) == f"{unit.number(length)} {unit.abbreviation}"
+    assert unit.format_length(length) == f"{unit.number(length)} {unit.abbreviation}"
 
 
 def test_there_is_no_negative_zero():
     """A length that rounds to nothing has no sign."""
     assert INCH.number(-1e-9) == "0.0000"
-    assert MILLIMETRE.figure(-1e-9) == "0"
+    assert MILLIMETRE.format_short_length(-1e-9) == "0"
 
 
 def test_figures_keep_zeros_that_count():
     """Only zeros behind a point are idle."""
-    assert (MILLIMETRE.figure(100.0), MILLIMETRE.figure(100.0, 0), INCH.figure(254.0)) == ("100", "100", "10")
+    assert (
+        MILLIMETRE.format_short_length(100.0),
+        MILLIMETRE.format_short_length(100.0, 0),
+        INCH.format_short_length(254.0),
+    ) == ("100", "100", "10")
 
 
 def test_names():
     """Any capitals, short and long; anything else is refused with what there is."""
-    assert unit_named("Inch") == unit_named(" in ") == INCH
+    assert find_unit("Inch") == find_unit(" in ") == INCH
     with pytest.raises(InputError, match="Unit 'ell' is not known: use mm, cm, m or inch"):
-        unit_named("ell")
+        find_unit("ell")
 
 
 def test_stresses_are_in_ksi_beside_pounds():
     """1000 lbf on a square inch is 6.894757 MPa (NIST SP 811); MPa stand beside it, not in columns."""
-    assert INCH.stress_words(6.894757) == "1.0 ksi (7 MPa)"
-    assert INCH.stress_number(896.0) == "130.0"
-    assert MILLIMETRE.stress_words(896.0) == "896 MPa"
+    assert INCH.format_stress(6.894757) == "1.0 ksi (7 MPa)"
+    assert INCH.format_stress_number(896.0) == "130.0"
+    assert MILLIMETRE.format_stress(896.0) == "896 MPa"
 
 
 def test_moments_are_in_foot_pounds_beside_newton_metres():
     """A foot pound is 1.355818 N m (NIST SP 811), and -0.5 of it turns the other way."""
-    assert INCH.moment_words(100 * 1355.818) == "100 ft lbf (136 N m)"
-    assert INCH.moment_words(-0.5 * 1355.818) == "−0.5 ft lbf (−0.678 N m)"
-    assert MILLIMETRE.moment_words(1355.818) == "1.36 N m"
+    assert INCH.format_moment(100 * 1355.818) == "100 ft lbf (136 N m)"
+    assert INCH.format_moment(-0.5 * 1355.818) == "−0.5 ft lbf (−0.678 N m)"
+    assert MILLIMETRE.format_moment(1355.818) == "1.36 N m"
 
 
 def test_the_figure_of_stress_takes_the_unit_of_its_heading():
     """A column headed ksi has no MPa under it."""
     from workhold.model.quality import FIGURES, PIN_STRESS
-    from workhold.presenting.figure_words import figure_text, heading
+    from workhold.presenting.figure_words import format_figure_number, make_heading
 
     stress = FIGURES[PIN_STRESS]
-    assert heading(stress, INCH).endswith("ksi") and figure_text(stress, 896.0, INCH) == "130.0"
+    assert make_heading(stress, INCH).endswith("ksi") and format_figure_number(stress, 896.0, INCH) == "130.0"
     assert (
-        heading(stress, MILLIMETRE).endswith("MPa") and float(figure_text(stress, 896.0, MILLIMETRE)) == 896
+        make_heading(stress, MILLIMETRE).endswith("MPa")
+        and float(format_figure_number(stress, 896.0, MILLIMETRE)) == 896
     )
 
 
 def test_forces_of_tables_are_pounds_with_inches():
     """A load reaction of 1000 N is 224.8 lbf; where it is ranked by, what is equal to two digits shows alike."""
     from workhold.model.quality import FIGURES
-    from workhold.presenting.figure_words import counted_text, figure_text, figure_words, heading
+    from workhold.presenting.figure_words import (
+        format_figure,
+        format_figure_number,
+        format_ranked_figure,
+        make_heading,
+    )
 
     force = next(figure for figure in FIGURES if figure.key == "load_reaction")
-    assert heading(force, INCH).endswith(" lbf") and heading(force, MILLIMETRE).endswith(" N")
-    assert (figure_text(force, 1000.0, INCH), figure_text(force, 1000.0, MILLIMETRE)) == ("224.8", "1000.0")
-    assert figure_words(force, 1000.0, INCH) == "224.8 lbf" and figure_words(force, inf, INCH) == "any"
-    assert (counted_text(force, 1003.0, INCH), counted_text(force, 1003.0, MILLIMETRE)) == ("225", "1000")
+    assert make_heading(force, INCH).endswith(" lbf") and make_heading(force, MILLIMETRE).endswith(" N")
+    assert (format_figure_number(force, 1000.0, INCH), format_figure_number(force, 1000.0, MILLIMETRE)) == (
+        "224.8",
+        "1000.0",
+    )
+    assert format_figure(force, 1000.0, INCH) == "224.8 lbf" and format_figure(force, inf, INCH) == "any"
+    assert (format_ranked_figure(force, 1003.0, INCH), format_ranked_figure(force, 1003.0, MILLIMETRE)) == (
+        "225",
+        "1000",
+    )

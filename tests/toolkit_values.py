@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from workhold.fixels.kinds import table_of
+from workhold.fixels.kinds import find_table
 
 # A value of each field, as the constructor takes it, with the words of its option; no two fields have the same.
 VALUES: dict[str, tuple[Any, Any]] = {
@@ -43,4 +43,4 @@ VALUES: dict[str, tuple[Any, Any]] = {
 
 def given(kind: str) -> dict[str, Any]:
     """A value for each field of a kind."""
-    return {row.name: VALUES[row.name][0] for row in table_of(kind).fields}
+    return {row.name: VALUES[row.name][0] for row in find_table(kind).fields}

@@ -6,7 +6,7 @@ from typing import Any
 
 from workhold import Fixture
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.seats import undecided_pairs
+from workhold.listing.seats import list_undecided_pairs
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.search_report import AT_AN_EDGE, Undecided
 
@@ -31,4 +31,4 @@ def as_undecided(fixture: Fixture) -> Undecided:
 
 def pairs_undecided(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
     """Fixtures with two clamps as a search names them where it cannot decide them."""
-    return list(undecided_pairs(table, toolkit))
+    return list(list_undecided_pairs(table, toolkit))

@@ -59,15 +59,15 @@ def row_of(design: Design) -> dict[str, Any] | None:
 def both(part: str, pitch: float, columns: int, peg_radius: float) -> dict[str, Any]:
     """Task: the algebra's counts and seconds, and every difference from what the chord curves list, in sentences."""
     import workhold
-    from workhold.completeness import differences
-    from workhold.verification.listing import listing_of
+    from workhold.completeness import find_differences
+    from workhold.verification.listing import collect_claims
 
     result, outcome = algebra_result(part, pitch, columns, peg_radius)
     curves = workhold.design(*loaded(part, pitch, columns, peg_radius), threads=1)
     # The accounts of the engines count different things; fixtures are compared one by one.
     told = [
         one
-        for one in differences(listing_of(result), curves)
+        for one in find_differences(collect_claims(result), curves)
         if not one.startswith(("the proof says", "the statistics says"))
     ]
     return outcome | {

@@ -225,7 +225,7 @@ def render(figures: Figures) -> list[Block]:
 def drawn(points: list[dict[str, Any]], of: str, quantity: str, across: str, up: str) -> str:
     """A plot of all points, those of one part in one colour, in the order of their sizes."""
     axes = Axes.around([(point[of], point[quantity]) for point in points])
-    scene = Scene.page(PAGE, f"{up} against {across}")
+    scene = Scene.make_page(PAGE, f"{up} against {across}")
     draw_grid(scene, axes, across, up)
     names = list(dict.fromkeys(point["part"] for point in points))
     for number, name in enumerate(names):
@@ -234,10 +234,10 @@ def drawn(points: list[dict[str, Any]], of: str, quantity: str, across: str, up:
             mine = [point for point in points if (point["part"], point["columns"]) == (name, columns)]
             places = [axes.place(point[of], point[quantity]) for point in mine]
             if len(places) > 1:
-                scene.line(places, colour, 1.6)
+                scene.add_line(places, colour, 1.6)
             for place in places:
-                scene.circle(place, 6.0, colour if columns == 1 else "#ffffff", colour, 2.0)
+                scene.add_circle(place, 6.0, colour if columns == 1 else "#ffffff", colour, 2.0)
         at = FRAME.x0 + 24.0, FRAME.y0 + 26.0 + 28.0 * number
-        scene.circle(at, 6.0, colour, colour, 2.0)
-        scene.text((at[0] + 20.0, at[1]), name, SMALL, fill=BLACK)
-    return scene.svg()
+        scene.add_circle(at, 6.0, colour, colour, 2.0)
+        scene.add_text((at[0] + 20.0, at[1]), name, SMALL, fill=BLACK)
+    return scene.to_svg()

@@ -16,7 +16,7 @@ from fpdf import FPDF
 from paper.document import Block, Heading, Line, Listing, Marked, Paragraph, Picture, Table, typographic
 from paper.typesetting import SPACE, Word, broken, natural_width, words_of
 from workhold.drawing.pdf import FONT, POINTS_PER_UNIT, draw_children
-from workhold.drawing.scene import BLACK, GREY, PORTRAIT, font_files, text_width
+from workhold.drawing.scene import BLACK, GREY, PORTRAIT, list_font_files, measure_text
 
 __all__ = ["pdf_pages"]
 
@@ -74,7 +74,7 @@ class Pages:
         pdf.set_producer("workhold")
         pdf.set_title(title)
         pdf.set_lang("en")
-        for weight, path in zip(("", "B"), font_files(), strict=True):
+        for weight, path in zip(("", "B"), list_font_files(), strict=True):
             pdf.add_font(FONT, weight, path)
         pages = cls(pdf, title)
         pages.turn()
@@ -93,7 +93,7 @@ class Pages:
         number = self.pdf.page_no()
         if number > 1:
             self.plain(typographic(self.title), LEFT, 60.0, SMALL, GREY)
-            self.plain(str(number), RIGHT - text_width(str(number), SMALL), 60.0, SMALL, GREY)
+            self.plain(str(number), RIGHT - measure_text(str(number), SMALL), 60.0, SMALL, GREY)
 
     def need(self, height: float) -> None:
         """Begin a page unless so much is free on this one."""
@@ -218,7 +218,7 @@ class Pages:
         for words, span in block.groups:
             width = sum(layout.widths[first : first + span]) + layout.gutter * (span - 1)
             if words:
-                middle = x + (width - text_width(words, size, bold=True)) / 2
+                middle = x + (width - measure_text(words, size, bold=True)) / 2
                 self.write(words_of((words,), bold=True), middle, self.y, size)
                 self.pdf.set_line_width(0.5)
                 self.pdf.set_draw_color(BLACK)
@@ -264,7 +264,7 @@ class Pages:
             for number, (svg, words) in enumerate(parts):
                 x = LEFT + number * (self.part_width + GUTTER)
                 draw_children(self.pdf, placed(svg, x, self.y, self.part_width))
-                middle = x + (self.part_width - text_width(words, SMALL)) / 2
+                middle = x + (self.part_width - measure_text(words, SMALL)) / 2
                 self.plain(words, middle, self.y + height - GAP - 3.0, SMALL, GREY)
             self.y += height
         self.caption(block.label, block.caption)

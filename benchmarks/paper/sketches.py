@@ -8,7 +8,7 @@ from typing import Any
 import workhold
 from paper.document import Block, Figures, Heading, Inline, Marked, Paragraph, Picture, Table
 from workhold.contact.features import list_contact_features
-from workhold.drawing.bench import bench_of, draw_bench, outline_path
+from workhold.drawing.bench import draw_bench, make_bench, make_outline_path
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 
 NAME, TITLE = "sketches", "Our models, and the paper's figures drawn anew"
@@ -83,26 +83,26 @@ def searched(part: str, pitch: float, columns: int) -> Any:
 
 def card(result: Any, fixture: Any, words: str) -> str:
     """A small picture of a fixture: no lettering, forces as arrows."""
-    scene = Scene.page(CARD, words)
-    bench = bench_of(fixture, result.workpiece, result.toolkit)
+    scene = Scene.make_page(CARD, words)
+    bench = make_bench(fixture, result.workpiece, result.toolkit)
     room = Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE)
-    draw_bench(scene, bench, View.fitting(bench.extent, room), weight=0.6, longest=36.0, axes=False)
-    return scene.svg()
+    draw_bench(scene, bench, View.fit_box(bench.extent, room), weight=0.6, longest=36.0, axes=False)
+    return scene.to_svg()
 
 
 def grown_features(name: str, peg_radius: float) -> str:
     """A workpiece with its features grown by the radius of a peg, and a peg on each."""
     part = workhold.load(name)
-    scene = Scene.page(CARD, "features grown by the radius of the pegs")
+    scene = Scene.make_page(CARD, "features grown by the radius of the pegs")
     bounds = Box(*part.bounds).grown(2 * peg_radius)
-    view = View.fitting(bounds, Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE))
-    scene.path(outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
+    view = View.fit_box(bounds, Box(EDGE, EDGE, CARD[0] - EDGE, CARD[1] - EDGE))
+    scene.add_path(make_outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
     for feature in list_contact_features(part, peg_radius):
-        scene.path(outline_path([[feature.segment]], view).rstrip("Z"), "#b3122a", 1.6)
+        scene.add_path(make_outline_path([[feature.segment]], view).rstrip("Z"), "#b3122a", 1.6)
         middle = view(feature.segment.at(0.0))
-        scene.circle(middle, peg_radius * view.scale, "none", GREY, 0.8)
-        scene.circle(middle, 1.8, "#b3122a")
-    return scene.svg()
+        scene.add_circle(middle, peg_radius * view.scale, "none", GREY, 0.8)
+        scene.add_circle(middle, 1.8, "#b3122a")
+    return scene.to_svg()
 
 
 def models(figures: Figures) -> list[tuple[Inline, ...]]:

@@ -74,7 +74,7 @@ def timed(part: str, pitch: float, columns: int, peg_radius: float = PEG_RADIUS)
     vars(design)["run_blocks"] = watched("searching", design.run_blocks)
     for stage, name in (("deciding", "take"), ("deciding", "finish_deciding"), ("measuring", "measure")):
         setattr(ResultCollector, name, watched(stage, getattr(ResultCollector, name)))
-    vars(results)["with_table"] = watched("ranking", results.with_table)
+    vars(results)["add_table"] = watched("ranking", results.add_table)
     best: dict[str, float] = {}
     for _ in range(REPEATS):
         spent.update(dict.fromkeys(STAGES, 0.0))

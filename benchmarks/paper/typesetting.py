@@ -12,7 +12,7 @@ from typing import Literal
 from attrs import evolve, field, frozen
 
 from paper.document import Inline, Marked, Number, typographic
-from workhold.drawing.scene import has_character, text_width
+from workhold.drawing.scene import has_character, measure_text
 
 __all__ = ["Piece", "Word", "broken", "natural_width", "words_of"]
 
@@ -41,7 +41,7 @@ class Piece:
 
     def width(self, size: float) -> float:
         """How wide it is in a font size."""
-        return text_width(self.text, size, self.bold)
+        return measure_text(self.text, size, self.bold)
 
 
 @frozen

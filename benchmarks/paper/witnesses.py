@@ -15,7 +15,7 @@ import workhold
 from designs import PEG_RADIUS
 from paper.sketches import card
 from workhold.contact.problem import Problem
-from workhold.drawing.bench import outline_path
+from workhold.drawing.bench import make_outline_path
 from workhold.drawing.scene import BLACK, Box, Scene, View
 
 __all__ = [
@@ -109,10 +109,10 @@ def found_by_naive_roots(result: Any, tolerance: float) -> Any:
 
 def missing(result: Any, few: Any) -> list[Any]:
     """The fixtures of a result that another lacks."""
-    from workhold.verification.listing import listing_of
+    from workhold.verification.listing import collect_claims
     from workhold.verification.repeats import KnownFixtures
 
-    listing = listing_of(few)
+    listing = collect_claims(few)
     seen = KnownFixtures(listing.hardware)
     for index, fixture in enumerate(listing.fixtures):
         seen.add(index, fixture)
@@ -175,18 +175,18 @@ def sliding_fixture(separation: int) -> dict[str, Any]:
 
 def sliding_picture(separations: tuple[int, int]) -> str:
     """The bar with its four pegs, the right ones at two separations."""
-    scene = Scene.page((520.0, 340.0), "four contacts with force closure that slide apart")
+    scene = Scene.make_page((520.0, 340.0), "four contacts with force closure that slide apart")
     part = bar()
-    view = View.fitting(Box(*part.bounds).grown(9.0), Box(12.0, 12.0, 508.0, 328.0))
-    scene.path(outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
+    view = View.fit_box(Box(*part.bounds).grown(9.0), Box(12.0, 12.0, 508.0, 328.0))
+    scene.add_path(make_outline_path(part.loop_segments, view), BLACK, 1.6, "#fff7d1", fill_rule="evenodd")
     radius = PEG_RADIUS * view.scale
     for place in ((-3.0, -20.0), (7.0, 20.0)):
-        scene.circle(view(place), radius, "#b3122a", BLACK, 1.0)
+        scene.add_circle(view(place), radius, "#b3122a", BLACK, 1.0)
     for separation, fill in zip(separations, ("#b3122a", "none"), strict=True):
         for place in ((separation + 10.0, 10.0), (float(separation), -10.0)):
-            scene.circle(view(place), radius, fill, "#b3122a", 1.4)
-    scene.arrow(view((separations[0] + 15.0, 20.0)), view((separations[1] + 5.0, 20.0)), BLACK, 1.6, 12.0)
-    return scene.svg()
+            scene.add_circle(view(place), radius, fill, "#b3122a", 1.4)
+    scene.add_arrow(view((separations[0] + 15.0, 20.0)), view((separations[1] + 5.0, 20.0)), BLACK, 1.6, 12.0)
+    return scene.to_svg()
 
 
 def picture(result: Any, fixture: Any, words: str) -> str:

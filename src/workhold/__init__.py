@@ -1,7 +1,7 @@
 """workhold finds every way to hold a flat part: in a vise, on a plate with clamps, or against a fence.
 
 The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate`, :class:`Fence`,
-:class:`FlatJaw` and :class:`PlainVise` describe what holds it. The function :func:`design` finds all fixtures and
+:class:`FlatJaw` and :class:`PlainVise` describe what holds it. The function :func:`run_design_tool` finds all fixtures and
 returns a :class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on first use, so
 ``import workhold`` costs next to nothing.
 """

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["ArchiveWriter", "Column", "Columns", "is_archive", "mapped_archive"]
+__all__ = ["ArchiveWriter", "Column", "Columns", "is_archive", "map_archive"]
 
 FIRST_BYTES = b"PK\x03\x04"
 ALIGNMENT = 64
@@ -57,7 +57,7 @@ class Column:
     kind: str
     shape: tuple[int, ...] = ()
 
-    def header(self, rows: int) -> bytes:
+    def make_header(self, rows: int) -> bytes:
         stream = io.BytesIO()
         about = {"descr": self.kind, "fortran_order": False, "shape": (rows, *self.shape)}
         np.lib.format.write_array_header_1_0(stream, about)
@@ -90,7 +90,7 @@ class ArchiveMember:
         """Where the content begins."""
         return self.start + LOCAL.size + len(self.name) + 24 + self.room
 
-    def local_header(self) -> bytes:
+    def make_local_header(self) -> bytes:
         sizes = struct.pack("<2H2Q", SIZES, 16, self.size, self.size)
         extra = sizes + struct.pack("<2H", ROOM, self.room) + bytes(self.room)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
@@ -98,7 +98,7 @@ class ArchiveMember:
             LOCAL.pack(FIRST_BYTES, VERSION, 0, 0, 0, FIRST_DAY, self.checksum, *lengths) + self.name + extra
         )
 
-    def central_header(self) -> bytes:
+    def make_central_header(self) -> bytes:
         extra = struct.pack("<2H3Q", SIZES, 24, self.size, self.size, self.start)
         lengths = IN_EXTRA, IN_EXTRA, len(self.name), len(extra)
         fixed = CENTRAL.pack(
@@ -127,7 +127,7 @@ class ArchiveWriter:
     def __attrs_post_init__(self) -> None:
         start = 0
         for name, column in self.columns.items():
-            header = column.header(self.rows)
+            header = column.make_header(self.rows)
             size = len(header) + self.rows * column.row_bytes
             member = ArchiveMember(f"{name}.npy".encode(), start, size, crc32(header))
             self.put(member.content, header)
@@ -149,11 +149,11 @@ class ArchiveWriter:
     def shorten(self) -> None:
         """Write the number of rows there are into the headers, whose length does not depend on it."""
         for member, column in zip(self.members, self.columns.values(), strict=True):
-            said, header = column.header(self.rows), column.header(self.done)
+            said, header = column.make_header(self.rows), column.make_header(self.done)
             size = self.done * column.row_bytes
             self.put(member.content, header)
             member.size = len(header) + size
-            member.checksum ^= followed_by(crc32(said) ^ crc32(header), size)
+            member.checksum ^= extend_checksum_difference(crc32(said) ^ crc32(header), size)
         self.rows = self.done
 
     def close(self, name: str, text: str, mark: str) -> None:
@@ -166,9 +166,9 @@ class ArchiveWriter:
         self.put(member.content, content)
         self.members.append(member)
         for one in self.members:
-            self.put(one.start, one.local_header())
+            self.put(one.start, one.make_local_header())
         place, count = member.content + member.size, len(self.members)
-        directory = b"".join(one.central_header() for one in self.members)
+        directory = b"".join(one.make_central_header() for one in self.members)
         end = END_64.pack(
             b"PK\x06\x06", END_64.size - 12, VERSION, VERSION, 0, 0, count, count, len(directory), place
         )
@@ -179,7 +179,7 @@ class ArchiveWriter:
         self.put(place, directory + end + locator + last_words + mark.encode())
 
 
-def followed_by(difference: int, size: int) -> int:
+def extend_checksum_difference(difference: int, size: int) -> int:
     """Return the difference (XOR) of two checksums after ``size`` equal bytes, from their difference before.
 
     Each bit that follows multiplies the difference by x, modulo the polynomial.
@@ -189,13 +189,13 @@ def followed_by(difference: int, size: int) -> int:
     power = 1 << TOP - 8
     while size:
         if size & 1:
-            difference = multiplied(difference, power)
-        power = multiplied(power, power)
+            difference = multiply_polynomials(difference, power)
+        power = multiply_polynomials(power, power)
         size >>= 1
     return difference
 
 
-def multiplied(a: int, b: int) -> int:
+def multiply_polynomials(a: int, b: int) -> int:
     """Return the product of two polynomials with bits for coefficients, modulo that of the checksum."""
     product = 0
     for place in range(TOP, -1, -1):
@@ -229,7 +229,7 @@ class CarefulFile(io.FileIO):
         return super().read(MOST_DIRECTORY if size is None or size < 0 else size) or b""
 
 
-def mapped_archive(
+def map_archive(
     path: Path, columns: Columns | Callable[[str], Columns], name: str, whole: bool = False
 ) -> tuple[str, dict[str, NDArray[Any]]]:
     """Return the text of an archive and its columns, which are read only where they are looked at.
@@ -258,19 +258,23 @@ def mapped_archive(
             content = mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ)
         texts = [info for info in everything if info.filename == name]
         refuse_unlike({name}, texts, [])
-        first, end = span(texts[0], content)
+        first, end = find_member_span(texts[0], content)
         if end - first > MOST_TEXT:
             raise BadZipFile(f"its {name} is too large")
         text = content[first:end].decode()
         columns = columns if isinstance(columns, Mapping) else columns(text)
         names = {f"{one}.npy" for one in columns} | {name}
         members = [info for info in everything if info.filename in names]
-        spans = {info.filename: span(info, content) for info in members}
+        spans = {info.filename: find_member_span(info, content) for info in members}
         refuse_unlike(names, members, list(spans.values()))
         for info in members:
-            if (whole or info.filename == name) and checksum(content, *spans[info.filename]) != info.CRC:
+            if (whole or info.filename == name) and compute_checksum(
+                content, *spans[info.filename]
+            ) != info.CRC:
                 raise BadZipFile(f"{info.filename} has been changed since it was written")
-        arrays = {one: mapped(content, *spans[f"{one}.npy"], one, column) for one, column in columns.items()}
+        arrays = {
+            one: map_column(content, *spans[f"{one}.npy"], one, column) for one, column in columns.items()
+        }
     except (BadZipFile, struct.error, ValueError, NotImplementedError, OverflowError) as error:
         reason = str(error) if isinstance(error, BadZipFile) else "it is damaged"
         raise InputError(f"{path} is not a result file: {reason[:1].lower()}{reason[1:]}.") from error
@@ -290,7 +294,7 @@ def refuse_unlike(names: set[str], members: Sequence[ZipInfo], spans: list[tuple
         raise BadZipFile("its members overlap")
 
 
-def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
+def find_member_span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
     """Return where the content of a member begins and ends.
 
     Raises BadZipFile when it is packed or locked, or not inside the file, and struct.error when its header is
@@ -307,7 +311,7 @@ def span(info: ZipInfo, content: mmap.mmap) -> tuple[int, int]:
     return first, first + info.file_size
 
 
-def checksum(content: mmap.mmap, first: int, end: int) -> int:
+def compute_checksum(content: mmap.mmap, first: int, end: int) -> int:
     """Return the CRC-32 of a part of a file."""
     value = 0
     with memoryview(content) as view:
@@ -316,7 +320,7 @@ def checksum(content: mmap.mmap, first: int, end: int) -> int:
     return value
 
 
-def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
+def map_column(content: mmap.mmap, first: int, end: int, name: str, column: Column) -> NDArray[Any]:
     """Return a column (N, ...) in a mapped file, read-only.
 
     Raises BadZipFile when its header is not that of such a column of such a size, and struct.error when it is
@@ -325,7 +329,7 @@ def mapped(content: mmap.mmap, first: int, end: int, name: str, column: Column) 
     (length,) = struct.unpack_from("<H", content[first : min(first + 10, end)], 8)
     rows, rest = divmod(end - first - 10 - length, column.row_bytes)
     header, wanted = (
-        b"".join(part.split()) for part in (content[first : first + 10 + length], column.header(rows))
+        b"".join(part.split()) for part in (content[first : first + 10 + length], column.make_header(rows))
     )
     if rows < 0 or rest or header[:8] + header[10:] != wanted[:8] + wanted[10:]:
         raise BadZipFile(f"{name}.npy is not an array of {column.kind} with rows of shape {column.shape}")

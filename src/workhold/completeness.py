@@ -19,11 +19,11 @@ from workhold.model.notes import KeptBest
 from workhold.model.result import Result
 from workhold.model.search_report import Proof, Undecided
 from workhold.verification.account import is_by_algebra
-from workhold.verification.listing import Listing, listing_of, read_listing
+from workhold.verification.listing import Listing, collect_claims, read_listing
 from workhold.verification.repeats import KnownFixtures
-from workhold.verification.verify import Verification, no_progress, verify_listing
+from workhold.verification.verify import Verification, ignore_progress, verify_listing
 
-__all__ = ["completed", "verify"]
+__all__ = ["complete_verification", "verify"]
 
 Progress = Callable[[float, int], None]
 
@@ -65,12 +65,12 @@ def verify(
     >>> outcome.holds, outcome.is_compared
     (True, True)
     """
-    report = no_progress if progress is None else progress
-    listing = listing_of(source) if isinstance(source, Result) else read_listing(source)
+    report = ignore_progress if progress is None else progress
+    listing = collect_claims(source) if isinstance(source, Result) else read_listing(source)
     if not complete:
         return verify_listing(listing, report)
     outcome = verify_listing(listing, lambda fraction, count: report(fraction / 2, count))
-    return completed(
+    return complete_verification(
         outcome,
         listing,
         threads=threads,
@@ -79,7 +79,7 @@ def verify(
     )
 
 
-def completed(
+def complete_verification(
     outcome: Verification, listing: Listing, *, threads: int | None = None, **watching: Any
 ) -> Verification:
     """Return a verification with the faults that a new search of the listing's query finds.
@@ -103,12 +103,12 @@ def completed(
         result = answer(query, threads=threads, **watching)
     if not result.complete:
         return outcome
-    return evolve(outcome, faults=(*outcome.faults, *differences(listing, result)), is_compared=True)
+    return evolve(outcome, faults=(*outcome.faults, *find_differences(listing, result)), is_compared=True)
 
 
-def differences(listing: Listing, result: Result) -> Iterator[str]:
-    """The differences between a listing and a new search of its query, one sentence each, without a full
-    stop.
+def find_differences(listing: Listing, result: Result) -> Iterator[str]:
+    """Yield the differences between a listing and a new search of its query, one sentence each, without a
+    full stop.
 
     A listing that says it is incomplete may lack fixtures, and its account is that of a part of the work.
     """
@@ -126,7 +126,7 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
     surplus = sorted(set(range(listed)) - {match for _, match in matches})
     if surplus:
         yield (
-            f"a search does not find {counted(len(surplus))} of it, the first of them fixture "
+            f"a search does not find {format_count(len(surplus))} of it, the first of them fixture "
             f"{surplus[0] + 1}"
         )
     if not listing.complete:
@@ -137,22 +137,24 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
     missing = [fixture for fixture, match in matches if match is None and not listing.is_chosen]
     if missing:
         yield (
-            f"a search finds {counted(len(missing))} that it does not list, the first of them "
-            f"{in_words(missing[0])}"
+            f"a search finds {format_count(len(missing))} that it does not list, the first of them "
+            f"{describe_fixture(missing[0])}"
         )
     for name in ("found", "distinct"):
-        yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+        yield from find_other_numbers(name, getattr(listing, name), getattr(result, name))
     for name in ("pairs", "seats"):
         if getattr(listing, name) != getattr(result, name):
             yield f"{name} says {getattr(listing, name)}, and a search comes to {getattr(result, name)}"
     if listing.proof is not None and result.proof is not None:
-        yield from other_numbers("the proof", numbers_of(listing.proof), numbers_of(result.proof))
-        yield from other_entries(listing.proof, result.proof)
-    yield from other_numbers("the statistics", listing.statistics, result.statistics)
+        yield from find_other_numbers(
+            "the proof", list_proof_numbers(listing.proof), list_proof_numbers(result.proof)
+        )
+        yield from find_other_entries(listing.proof, result.proof)
+    yield from find_other_numbers("the statistics", listing.statistics, result.statistics)
     for fixture, match in matches:
         claim = None if match is None else listing.fixtures[match].seating
         if claim is not None and fixture.seating is not None:
-            other = first_other(claim.fields, fixture.seating.as_fields())
+            other = find_first_difference(claim.fields, fixture.seating.as_fields())
             if other:
                 yield f"a search finds another {other} of the seating of fixture {(match or 0) + 1}"
                 break
@@ -163,23 +165,24 @@ def differences(listing: Listing, result: Result) -> Iterator[str]:
 
 def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
     """Yield the same of what flat jaws hold, which angle, parallels and stop distinguish."""
-    listed, found = keys_of(listing.fixtures), keys_of(result)
+    listed, found = count_fixture_keys(listing.fixtures), count_fixture_keys(result)
     surplus, missing = sorted(listed[key] for key in listed.keys() - found), found.keys() - listed.keys()
     if surplus:
-        yield f"a search does not find {counted(len(surplus))} of it, the first of them fixture {surplus[0] + 1}"
+        yield f"a search does not find {format_count(len(surplus))} of it, the first of them fixture {surplus[0] + 1}"
     if missing and listing.complete and not listing.is_chosen and listing.query.best is None:
         theta, parallels, stop = min(missing, key=str)
         at = f", stop {stop}" if stop else ""
         yield (
-            f"a search finds {counted(len(missing))} that it does not list, the first of them at {theta:.4f} degrees on "
+            f"a search finds {format_count(len(missing))} that it does not list, "
+            f"the first of them at {theta:.4f} degrees on "
             f"parallels of {parallels:g} mm{at}"
         )
     if listing.complete:
         for name in ("found", "distinct"):
-            yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+            yield from find_other_numbers(name, getattr(listing, name), getattr(result, name))
 
 
-def keys_of(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
+def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
     """Return the places of fixtures of flat jaws by what distinguishes them."""
     return {
         (round(one.pose.theta_deg, 4) % 360, round(one.hold.parallels, 6), one.hold.stop): place
@@ -188,43 +191,48 @@ def keys_of(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None]
     }
 
 
-def first_other(written: Any, derived: Any, key: str = "") -> str:
+def find_first_difference(written: Any, derived: Any, key: str = "") -> str:
     """Return the key of the first value that differs by more than ``SAME_SEATING``; empty where all agree."""
     if isinstance(derived, dict):
         pairs = [(key or name, written.get(name), value) for name, value in derived.items()]
-        return next((other for name, a, b in pairs if (other := first_other(a, b, name))), "")
+        return next((other for name, a, b in pairs if (other := find_first_difference(a, b, name))), "")
     if isinstance(derived, list) and isinstance(written, list) and len(written) == len(derived):
         return next(
-            (other for a, b in zip(written, derived, strict=True) if (other := first_other(a, b, key))), ""
+            (
+                other
+                for a, b in zip(written, derived, strict=True)
+                if (other := find_first_difference(a, b, key))
+            ),
+            "",
         )
     if isinstance(derived, float) and isinstance(written, float | int):
         return "" if abs(written - derived) <= SAME_SEATING else key
     return "" if written == derived else key
 
 
-def counted(number: int) -> str:
+def format_count(number: int) -> str:
     return f"{number} fixture{'s' * (number != 1)}"
 
 
-def in_words(fixture: Fixture) -> str:
+def describe_fixture(fixture: Fixture) -> str:
     holes = ", ".join(peg.hole for peg in fixture.pegs)
     direction = "" if fixture.direction is None else f" {fixture.direction}"
     return f"of type {fixture.type}{direction} in {holes} at {fixture.pose.theta_deg:.6f} degrees"
 
 
-def numbers_of(proof: Proof) -> dict[str, int]:
+def list_proof_numbers(proof: Proof) -> dict[str, int]:
     names = (attribute.name for attribute in fields(Proof) if attribute.name != "undecided")
     return {name: getattr(proof, name) for name in names}
 
 
-def other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
+def find_other_numbers(name: str, written: Any, derived: Any) -> Iterator[str]:
     """Yield a fault for each number for which a search comes to another one."""
     for key, number in derived.items():
         if written.get(key) != number:
             yield f"{name} says {written.get(key)} for {key}, and a search comes to {number}"
 
 
-def other_entries(written: Proof, derived: Proof) -> Iterator[str]:
+def find_other_entries(written: Proof, derived: Proof) -> Iterator[str]:
     """Yield a fault when other candidates are undecided in a search."""
 
     def key(entry: Undecided) -> tuple[Any, ...]:

@@ -14,14 +14,14 @@ __all__ = [
     "NO_ROOM",
     "InputError",
     "WorkholdError",
-    "causes_of",
-    "encodable",
+    "list_causes",
+    "make_encodable",
     "lacks_memory",
-    "listed",
-    "plain",
-    "quoted",
+    "join_words",
+    "make_printable",
+    "quote_value",
     "refuse_kind",
-    "shortened",
+    "shorten_middle",
 ]
 
 # Letters of a sentence: enough for any of the program's own.
@@ -31,12 +31,13 @@ LONGEST_VALUE = 100
 CUT = " ... "
 
 
-def plain(text: str) -> str:
-    """Text without letters that steer a terminal, turn the direction of writing, or break a line or string.
+def make_printable(text: str) -> str:
+    """Return the text without letters that steer a terminal, turn the direction of writing, or break a line
+    or string.
 
     Examples
     --------
-    >>> plain("a\\x1b]0;b\\u202ec\\td")
+    >>> make_printable("a\\x1b]0;b\\u202ec\\td")
     'a?]0;b?c d'
     """
     if text.isprintable():
@@ -49,12 +50,12 @@ HALVES = re.compile("[\ud800-\udfff]")
 FIRST_BYTE = 0xDC00
 
 
-def encodable(text: str) -> str:
-    """Text that can be written in UTF-8: bytes of a file's name that are none stand as ``\\xfc``.
+def make_encodable(text: str) -> str:
+    """Return the text that can be written in UTF-8: bytes of a file's name that are none stand as ``\\xfc``.
 
     Examples
     --------
-    >>> print(encodable("Fl\\udcfcgel"))
+    >>> print(make_encodable("Fl\\udcfcgel"))
     Fl\\xfcgel
     """
     if text.isascii():
@@ -67,12 +68,12 @@ def encodable(text: str) -> str:
     )
 
 
-def shortened(text: str, most: int = LONGEST) -> str:
-    """Text of at most so many letters, its middle left out.
+def shorten_middle(text: str, most: int = LONGEST) -> str:
+    """Return the text of at most so many letters, its middle left out.
 
     Examples
     --------
-    >>> shortened("a" * 30, 15)
+    >>> shorten_middle("a" * 30, 15)
     'aaaaa ... aaaaa'
     """
     if len(text) <= most:
@@ -81,10 +82,10 @@ def shortened(text: str, most: int = LONGEST) -> str:
     return text[: most - len(CUT) - half] + CUT + text[len(text) - half :]
 
 
-def listed(words: Sequence[str]) -> str:
-    """Words with commas and a last "and".
+def join_words(words: Sequence[str]) -> str:
+    """Return the words with commas and a last "and".
 
-    >>> listed(["a"]), listed(["a", "b", "c"])
+    >>> join_words(["a"]), join_words(["a", "b", "c"])
     ('a', 'a, b and c')
     """
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
@@ -107,10 +108,10 @@ class InputError(WorkholdError, ValueError):
     """
 
     def __init__(self, message: str) -> None:
-        super().__init__(plain(shortened(message)))
+        super().__init__(make_printable(shorten_middle(message)))
 
 
-def causes_of(error: BaseException | None, *, or_context: bool = False) -> Iterator[BaseException]:
+def list_causes(error: BaseException | None, *, or_context: bool = False) -> Iterator[BaseException]:
     """Yield an error, the one that it was raised from, that one's, and so on; each once.
 
     Parameters
@@ -126,23 +127,24 @@ def causes_of(error: BaseException | None, *, or_context: bool = False) -> Itera
 
 
 def lacks_memory(error: BaseException | None) -> bool:
-    """Whether an error is due to too little memory; libraries and threads report it in words of their own."""
+    """Return whether an error is due to too little memory; libraries and threads report it in words of their own."""
     return any(
         isinstance(one, MemoryError)
         or getattr(one, "errno", None) == errno.ENOMEM
         or any(words in str(one) for words in NO_MEMORY)
-        for one in causes_of(error, or_context=True)
+        for one in list_causes(error, or_context=True)
     )
 
 
-def quoted(value: object) -> str:
-    """A value as a sentence shows it: text within quotes, numbers as they are written, all cut to some length.
+def quote_value(value: object) -> str:
+    """Return a value as a sentence shows it: text within quotes, numbers as they are written, all cut to some
+    length.
 
-    >>> quoted("12"), quoted(2.5)
+    >>> quote_value("12"), quote_value(2.5)
     ("'12'", '2.5')
     """
     plainly = isinstance(value, int | float) or type(value).__module__ == "numpy"
-    return shortened(str(value) if plainly else repr(value), LONGEST_VALUE)
+    return shorten_middle(str(value) if plainly else repr(value), LONGEST_VALUE)
 
 
 def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
@@ -166,4 +168,4 @@ def refuse_kind(value: object, kind: type, name: str, remedy: str) -> None:
     workhold.errors.InputError: the length cannot be 'x': give a number.
     """
     if not isinstance(value, kind):
-        raise InputError(f"{name} cannot be {quoted(value)}: {remedy}.")
+        raise InputError(f"{name} cannot be {quote_value(value)}: {remedy}.")

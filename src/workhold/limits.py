@@ -13,7 +13,7 @@ from functools import partial
 from math import ceil, inf, nan, sqrt
 from typing import TYPE_CHECKING, Any
 
-from workhold.errors import InputError, quoted
+from workhold.errors import InputError, quote_value
 
 if TYPE_CHECKING:
     import numpy as np
@@ -32,21 +32,21 @@ __all__ = [
     "MOST_RADIUS",
     "MOST_STEPS",
     "MOST_WAYS",
-    "counting_number",
+    "check_count",
     "read_number",
-    "real",
-    "real_array",
+    "convert_real",
+    "make_real_array",
     "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
     "refuse_much_work",
     "refuse_strong",
-    "thread_count",
-    "with_names",
+    "choose_thread_count",
+    "name_number_fields",
 ]
 
 
-def real(value: Any, name: str = "a number") -> float:
+def convert_real(value: Any, name: str = "a number") -> float:
     """Return a number as a float: infinite for a whole number too large for a float.
 
     A check that refuses numbers that are not finite then refuses these as well.
@@ -62,9 +62,9 @@ def real(value: Any, name: str = "a number") -> float:
 
     Examples
     --------
-    >>> real(3), real(-(10**400))
+    >>> convert_real(3), convert_real(-(10**400))
     (3.0, -inf)
-    >>> real("12", "the force")
+    >>> convert_real("12", "the force")
     Traceback (most recent call last):
         ...
     workhold.errors.InputError: the force cannot be '12': give a number.
@@ -80,15 +80,17 @@ def real(value: Any, name: str = "a number") -> float:
     except (TypeError, ValueError):
         number = None
     if number is None:
-        raise InputError(f"{name} cannot be {quoted(value)}: give a number.")
+        raise InputError(f"{name} cannot be {quote_value(value)}: give a number.")
     return number
 
 
-def with_names(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
-    """Fields of an attrs class, whose numbers are called by the names of their fields where they are refused."""
-    numbers: Any = real
+def name_number_fields(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
+    """Return the fields of an attrs class, whose numbers are called by the names of their fields where they
+    are refused.
+    """
+    numbers: Any = convert_real
     return [
-        one.evolve(converter=partial(real, name=one.name.replace("_", " ")))
+        one.evolve(converter=partial(convert_real, name=one.name.replace("_", " ")))
         if one.converter is numbers
         else one
         for one in fields
@@ -109,7 +111,7 @@ def read_number(text: Any) -> float:
         return nan
 
 
-def real_array(values: Any, name: str) -> NDArray[np.float64]:
+def make_real_array(values: Any, name: str) -> NDArray[np.float64]:
     """Return a copy of numbers as an array of floats.
 
     Raises
@@ -126,11 +128,11 @@ def real_array(values: Any, name: str) -> NDArray[np.float64]:
         raise TypeError("one value is no array of numbers")
     if array.dtype.kind not in "iuf":
         for value in np.array(values, dtype=object).flat:
-            real(value, name)
+            convert_real(value, name)
     return np.array(values, dtype=np.float64)
 
 
-def counting_number(name: str, value: Any) -> int | None:
+def check_count(name: str, value: Any) -> int | None:
     """Return a count from 1, or None.
 
     Raises
@@ -145,7 +147,7 @@ def counting_number(name: str, value: Any) -> int | None:
             return int(value)
     except (TypeError, ValueError, OverflowError):
         pass
-    raise InputError(f"{name} {quoted(value)} is not a positive whole number: give 1 or more.")
+    raise InputError(f"{name} {quote_value(value)} is not a positive whole number: give 1 or more.")
 
 
 # Coordinates and lengths in mm: a double of this size is known to 1e-10 mm, a tenth of the width of a rule's
@@ -255,7 +257,7 @@ def refuse_many_steps(
         )
 
 
-def thread_count(threads: int | None) -> int:
+def choose_thread_count(threads: int | None) -> int:
     """Return the number of threads to use: as asked for, or one for each processor this process may use.
 
     Raises

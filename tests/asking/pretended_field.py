@@ -50,7 +50,7 @@ def told(folder: Path) -> dict[str, Any]:
     from workhold.verification.verify import verify_file
     from workhold.web.families import FamilyForm
     from workhold.web.forms import JobForm
-    from workhold.web.toolkits import questions_answer
+    from workhold.web.toolkits import describe_questions
 
     part, vise = workhold.load("widget"), workhold.Vise(pitch=8, columns=1, peg_radius=3)
     file = folder / "r.json"
@@ -73,13 +73,13 @@ def told(folder: Path) -> dict[str, Any]:
         "file": json.loads(file.read_text())["pretended"],
         "read": workhold.open(file).query.pretended,
         "faults": list(verify_file(file).faults),
-        "request": job.queries(1000)[0][1].pretended,
+        "request": job.to_queries(1000)[0][1].pretended,
         "schemas": [
             form.model_json_schema()["properties"]["pretended"]["description"]
             for form in (JobForm, FamilyForm, DesignArguments)
         ],
         "of results": "pretended" in json.loads(printed("schema", "result"))["properties"],
-        "page": [one["label"] for one in questions_answer()["search"] if one["name"] == "pretended"],
+        "page": [one["label"] for one in describe_questions()["search"] if one["name"] == "pretended"],
     }
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from workhold.asking.declaring import declarations_of, values_of
+from workhold.asking.declaring import collect_declared_values, list_declarations
 from workhold.asking.search import SEATING, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
@@ -50,11 +50,11 @@ def test_values_are_converted_and_none_is_left() -> None:
     asked = SheetQuestion(thickness=12, clearance=0)
     assert (asked.thickness, asked.clearance, asked.friction) == (12.0, 0.0, None)
     assert isinstance(asked.thickness, float)
-    assert values_of(SearchQuestion(best=3.0))["best"] == 3
+    assert collect_declared_values(SearchQuestion(best=3.0))["best"] == 3
 
 
 def test_a_section_has_its_fields_in_their_order() -> None:
-    rows = declarations_of(SearchQuestion, [SEATING])
+    rows = list_declarations(SearchQuestion, [SEATING])
     assert [(row.option, row.metavar, row.needs) for row in rows] == [
         ("--seating", "K", ""),
         ("--opening", "LENGTH", "seating"),

@@ -15,11 +15,11 @@ from workhold import Query, Vise
 from workhold.batch.durations import Measured
 from workhold.batch.report import Report, Summary, write_results
 from workhold.batch.run import ANY_PART, Batch, BatchRun, HeldIn, Request, run_batch
-from workhold.batch.store import FolderStore, Store, refusal_record
-from workhold.batch.tables import JobRow, job_rows
-from workhold.batch.tasks import Outcome, Task, done
+from workhold.batch.store import FolderStore, Store, make_refusal_record
+from workhold.batch.tables import JobRow, list_job_rows
+from workhold.batch.tasks import Outcome, Task, run_task
 from workhold.errors import InputError
-from workhold.files.part_list import part_list
+from workhold.files.part_list import list_parts
 
 COARSE = HeldIn("coarse", Query(ANY_PART, Vise(pitch=16, columns=1, peg_radius=3)))
 FINE = HeldIn("fine", Query(ANY_PART, Vise(pitch=12, columns=1, peg_radius=3)))
@@ -34,16 +34,16 @@ class Onlooker:
     done: int = 0
     sentences: list[str] = field(factory=list)
 
-    def stage(self, doing: str, count: int, seconds: float) -> None:
+    def begin_stage(self, doing: str, count: int, seconds: float) -> None:
         self.stages.append((doing, count))
 
-    def one_done(self, seconds: float) -> None:
+    def count_done(self, seconds: float) -> None:
         self.done += 1
 
-    def begun(self, worker: str, title: str) -> None:
+    def note_begun(self, worker: str, title: str) -> None:
         pass
 
-    def ended(self, worker: str) -> None:
+    def note_ended(self, worker: str) -> None:
         pass
 
     def notify(self, sentence: str) -> None:
@@ -66,7 +66,7 @@ class InlineQueue:
             yield self.outcome(task)
 
     def outcome(self, task: Task) -> Outcome:
-        return done(task, "inline")
+        return run_task(task, "inline")
 
 
 def run_in(
@@ -78,7 +78,7 @@ def run_in(
     store: Store | None = None,
 ) -> Batch:
     """Run a batch of parts into a folder."""
-    requests = [Request(part, {}, held_in) for part in part_list([str(one) for one in given])]
+    requests = [Request(part, {}, held_in) for part in list_parts([str(one) for one in given])]
     store = FolderStore(folder / "work") if store is None else store
     measured = Measured(folder / "measured.csv")
     return run_batch(requests, best, BatchRun(store, queue, measured, Onlooker(), Event()))
@@ -86,7 +86,7 @@ def run_in(
 
 def rows_of(batch: Batch, folder: Path) -> Iterator[JobRow]:
     """What is known of each job of a batch that was run into a folder."""
-    return job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
+    return list_job_rows(batch.jobs, FolderStore(folder / "work"), Measured(folder / "measured.csv"))
 
 
 def reported(
@@ -122,14 +122,14 @@ class Fatal(Task):
     def prepare(self) -> None:
         pass
 
-    def record(self) -> bytes:
+    def make_record(self) -> bytes:
         for time in range(self.times):
             try:
                 (self.folder / f"{self.name}-{time}").touch(exist_ok=False)
             except FileExistsError:
                 continue
             os.kill(os.getpid(), signal.SIGKILL)
-        return refusal_record(f"{self.name} was done.")
+        return make_refusal_record(f"{self.name} was done.")
 
 
 @frozen
@@ -139,7 +139,7 @@ class Hanging(Task):
     def prepare(self) -> None:
         pass
 
-    def record(self) -> bytes:
+    def make_record(self) -> bytes:
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             (Path(folder) / "scratch").write_bytes(b"much")
             Event().wait()
@@ -155,7 +155,7 @@ class Failing(Task):
     def prepare(self) -> None:
         pass
 
-    def record(self) -> bytes:
+    def make_record(self) -> bytes:
         raise self.error
 
 

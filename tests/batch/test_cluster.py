@@ -20,7 +20,7 @@ from batch_helpers import Fatal, InlineQueue, Onlooker, records_in, reported, ru
 from test_command import run, started, wait_for_records
 from test_run import square
 
-from workhold.batch.store import FolderStore, UrlStore, plain_record, refusal_record, store_at
+from workhold.batch.store import FolderStore, UrlStore, make_refusal_record, parse_record, store_at
 from workhold.batch.tasks import Outcome
 from workhold.errors import InputError
 
@@ -76,9 +76,9 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
     name = batch.jobs[0].name
     assert store.place(name) == f"memory://workhold-test/batch/{name[:2]}/{name}.json"
     assert store.read(name) == records_in(tmp_path / "folder")[f"work/{name[:2]}/{name}.json"]
-    with store.file(name) as path:
+    with store.open_record(name) as path:
         assert path.read_bytes() == store.read(name)
-    store.write("abcd", refusal_record("no")[:-1])
+    store.write("abcd", make_refusal_record("no")[:-1])
     assert not store.has("abcd") and store.read("abcd") is None
     assert run_in(tmp_path, shop / "p30.json", queue=InlineQueue(0), store=store).is_complete
     reported(batch, tmp_path, tmp_path, sheets=tmp_path, store=store)
@@ -90,16 +90,16 @@ def test_records_in_an_object_store_are_those_of_a_folder(shop: Path, tmp_path: 
 def test_a_worker_puts_records_where_they_belong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import distributed
 
-    from workhold.batch.cluster import done_there
+    from workhold.batch.cluster import run_on_worker
 
     monkeypatch.setattr(distributed, "get_worker", lambda: SimpleNamespace(address="tcp://worker"))
     task, store = Fatal("abcd", "title", tmp_path, 0), FolderStore(tmp_path / "records")
-    back = done_there(task, None)
+    back = run_on_worker(task, None)
     assert back.record is not None and back.worker == "tcp://worker"
-    put = done_there(task, store)
+    put = run_on_worker(task, store)
     assert (put.record, put.failure) == (None, "") and store.read("abcd") == back.record
     (tmp_path / "file").touch()
-    lost = done_there(task, FolderStore(tmp_path / "file"))
+    lost = run_on_worker(task, FolderStore(tmp_path / "file"))
     assert lost.record is None and "cannot be written" in lost.failure
 
 
@@ -140,7 +140,7 @@ def test_a_task_that_ends_its_workers_is_given_up_and_others_are_not(
     assert set(outcomes) == {task.name for task in tasks}
     assert "workers ended while they worked on this" in outcomes["task2"].failure
     done = [outcome.record for name, outcome in outcomes.items() if name != "task2"]
-    assert all(record is not None and "was done" in plain_record(record)["refusal"] for record in done)
+    assert all(record is not None and "was done" in parse_record(record)["refusal"] for record in done)
     assert sum("is lost" in sentence for sentence in onlooker.sentences) >= 3
 
 
@@ -197,7 +197,7 @@ class Remade:
         assert timeout > 0
         if self.failures:
             raise self.failures.pop(0)
-        return Outcome(self.task.name, refusal_record("done again"), "")
+        return Outcome(self.task.name, make_refusal_record("done again"), "")
 
 
 @pytest.mark.parametrize(

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import workhold
 from own_heights import BASE, ROOF, STEM, stepped
 from workhold import Plate, design, load
-from workhold.batch.store import part_record, plain_record, workpiece_of
+from workhold.batch.store import make_part_record, parse_record, read_workpiece_record
 from workhold.cli.main import app
 from workhold.files.part.load import read_workpiece
 
@@ -77,7 +77,7 @@ def test_records_keep_outlines() -> None:
         {"clamp": ((12.0, 20.0), STEM), "wall": ((0.0, 40.0), ROOF)},
     ):
         part = stepped(own, BASE, clamp=[1])
-        again = workpiece_of(plain_record(part_record(part, ["a remark"])))
+        again = read_workpiece_record(parse_record(make_part_record(part, ["a remark"])))
         assert [role for role, _ in again.outlines] == list(own)
         for (_, one), (_, other) in zip(again.outlines, part.outlines, strict=True):
             assert all((a == b).all() for a, b in zip(one.loops, other.loops, strict=True))

@@ -14,7 +14,7 @@ from batch_helpers import COARSE, FINE, IMPOSSIBLE, InlineQueue, records_in, row
 from workhold.batch import store as store_module
 from workhold.batch.durations import Measured
 from workhold.batch.run import Batch
-from workhold.batch.tasks import Outcome, Task, done
+from workhold.batch.tasks import Outcome, Task, run_task
 from workhold.errors import InputError
 
 
@@ -164,7 +164,7 @@ class Fragile(InlineQueue):
     title: str = ""
 
     def outcome(self, task: Task) -> Outcome:
-        return Outcome(task.name, None, "Two workers ended.") if task.title == self.title else done(task)
+        return Outcome(task.name, None, "Two workers ended.") if task.title == self.title else run_task(task)
 
 
 def test_a_failure_is_a_row_and_is_tried_again_by_the_next_run(shop: Path, tmp_path: Path) -> None:
@@ -191,7 +191,7 @@ def test_a_full_disk_is_one_sentence_and_what_is_done_is_kept(
 
     def until_full(path: Path, record: bytes) -> None:
         if len(written) == 10:
-            with store_module.plain_errors(path):
+            with store_module.explain_system_errors(path):
                 raise OSError(errno.ENOSPC, "No space left on device")
         written.append(path)
         write(path, record)
@@ -216,7 +216,7 @@ def test_a_record_that_another_run_has_made_meanwhile_is_taken(shop: Path, tmp_p
         def outcome(self, task: Task) -> Outcome:
             if task.title == "b.json in fine":
                 run_in(tmp_path, shop, queue=InlineQueue(), held_in=(COARSE, FINE))
-            return done(task)
+            return run_task(task)
 
     queue = Meanwhile()
     batch = run_in(tmp_path, shop, queue=queue, held_in=(COARSE, FINE))
@@ -229,7 +229,7 @@ def test_a_file_that_changes_while_the_batch_runs_is_told(shop: Path, tmp_path: 
         def outcome(self, task: Task) -> Outcome:
             for path in shop.glob("[ab].json"):
                 square(path, 60)
-            return done(task)
+            return run_task(task)
 
     # Longest first: the largest file is read before the others are looked at again.
     square(shop / "long.json", 50, "n" * 500)

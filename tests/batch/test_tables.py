@@ -16,7 +16,7 @@ import workhold
 from workhold import Fence, Plate, Query
 from workhold.batch import tables
 from workhold.batch.run import ANY_PART, Batch, HeldIn
-from workhold.batch.tables import BEST, RESULTS, JobRow, table_names, write_tables
+from workhold.batch.tables import BEST, RESULTS, JobRow, list_table_names, write_tables
 from workhold.files.replacing import is_own
 from workhold.statics.judging import unfit
 
@@ -80,7 +80,7 @@ def test_both_forms_have_the_same_rows(
 
     rows = written()
     monkeypatch.setattr(tables, "has_parquet", lambda: False)
-    assert table_names() == ("results.csv", "best.csv")
+    assert list_table_names() == ("results.csv", "best.csv")
     written()
     for name, wanted in (
         ("results", [one.row for one in rows]),
@@ -90,8 +90,8 @@ def test_both_forms_have_the_same_rows(
         assert table == wanted
         with (tmp_path / f"{name}.csv").open(newline="") as stream:
             for plain, row in zip(csv.DictReader(stream), wanted, strict=True):
-                assert {key: tables.cell(value) for key, value in row.items()} == {
-                    key: type(tables.cell(row[key]))(value) if row[key] is not None else None
+                assert {key: tables.convert_cell(value) for key, value in row.items()} == {
+                    key: type(tables.convert_cell(row[key]))(value) if row[key] is not None else None
                     for key, value in plain.items()
                 }
         for ending in ("csv", "parquet"):

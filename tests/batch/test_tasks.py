@@ -16,11 +16,17 @@ import workhold
 from workhold import Query, answer, conventions, load
 from workhold.batch import tasks
 from workhold.batch.run import Job
-from workhold.batch.store import FolderStore, checksum, is_whole, plain_record, workpiece_of
+from workhold.batch.store import (
+    FolderStore,
+    is_whole,
+    make_checksum_line,
+    parse_record,
+    read_workpiece_record,
+)
 from workhold.batch.tables import BEST, take_record
-from workhold.batch.tasks import Answering, Reading, done, name_of, program
+from workhold.batch.tasks import Answering, Reading, identify_program, name_of, run_task
 from workhold.errors import InputError
-from workhold.files.result.writer import result_text
+from workhold.files.result.writer import write_result_text
 from workhold.search import estimate
 from workhold.verification import verify_file
 from workhold.version import ANSWERS
@@ -30,7 +36,7 @@ FLANGE = Path(str(files("workhold"))) / "data" / "parts" / "flange.json"
 
 def part_of(content: bytes, ending: str = ".json") -> bytes:
     """The record of a drawing."""
-    record = done(Reading("name", "title", ending, content, {})).record
+    record = run_task(Reading("name", "title", ending, content, {})).record
     assert record is not None
     return record
 
@@ -42,9 +48,9 @@ def part() -> bytes:
 
 
 def test_a_drawing_becomes_the_part_that_it_is(part: bytes) -> None:
-    record = plain_record(part)
+    record = parse_record(part)
     flange = load("flange")
-    assert workpiece_of(record).loops[0].tolist() == flange.loops[0].tolist()
+    assert read_workpiece_record(record).loops[0].tolist() == flange.loops[0].tolist()
     assert (record["faces"], record["refusal"]) == (len(flange.faces), "")
     assert record["size"] == [flange.bounds[2] - flange.bounds[0], flange.bounds[3] - flange.bounds[1]]
 
@@ -54,11 +60,11 @@ def test_of_very_many_fixtures_the_best_are_sought(
 ) -> None:
     """They are the first of all, and how many there are is told about."""
     assert isinstance(COARSE.query, Query)
-    counted = done(Answering("name", "title", part, COARSE.query, 3)).record
+    counted = run_task(Answering("name", "title", part, COARSE.query, 3)).record
     monkeypatch.setattr(estimate, "estimate_fixtures", lambda *asked, **more: 4_240_000)
-    sought = done(Answering("name", "title", part, COARSE.query, 3)).record
+    sought = run_task(Answering("name", "title", part, COARSE.query, 3)).record
     assert counted is not None and sought is not None
-    all_counted, best = plain_record(counted), plain_record(sought)
+    all_counted, best = parse_record(counted), parse_record(sought)
     assert best["fixtures"] == all_counted["fixtures"] and len(best["fixtures"]) == 3
     assert best["note_data"][0] == {"kind": "many", "count": 4_240_000, "listed": 3}
     assert sum(best["found"].values()) == 3 < sum(all_counted["found"].values())
@@ -74,18 +80,18 @@ def test_of_very_many_fixtures_the_best_are_sought(
 
 
 def test_a_drawing_that_cannot_be_read_is_a_record_without_a_name_of_its_file() -> None:
-    record = plain_record(part_of(b"0\nSECTION\n", ".dxf"))
+    record = parse_record(part_of(b"0\nSECTION\n", ".dxf"))
     assert record["refusal"].startswith("the DXF file is cut short")
 
 
 def test_an_answer_is_the_first_of_all_fixtures_and_counts_all(part: bytes) -> None:
     assert isinstance(COARSE.query, Query)
-    outcome = done(Answering("name", "title", part, COARSE.query, 3))
+    outcome = run_task(Answering("name", "title", part, COARSE.query, 3))
     whole = answer(Query(evolve(load("flange"), name="part"), COARSE.query.toolkit), threads=2)
     assert sum(whole.found.values()) > 3
     first = evolve(whole, query=evolve(whole.query, best=3), table=whole.table.take(slice(0, 3)))
-    assert outcome.record == "".join(result_text(first)).encode()
-    assert done(Answering("other", "title", part, COARSE.query, 3)).record == outcome.record
+    assert outcome.record == "".join(write_result_text(first)).encode()
+    assert run_task(Answering("other", "title", part, COARSE.query, 3)).record == outcome.record
 
 
 def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Path) -> None:
@@ -94,12 +100,12 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Pa
     query = evolve(COARSE.query, seating=2, opening=0.001)
     whole = answer(evolve(query, workpiece=evolve(load("flange"), name="part")))
     for kept in (3, 1):
-        record = done(Answering("name", "title", part, query, kept)).record
+        record = run_task(Answering("name", "title", part, query, kept)).record
         first = evolve(whole.part(slice(0, kept)), query=evolve(whole.query, best=kept))
         assert (
             len(first.seating) == min(kept, 2)
             and first.notes
-            and record == "".join(result_text(first)).encode()
+            and record == "".join(write_result_text(first)).encode()
         )
         (tmp_path / "r.json").write_bytes(record)
         told = [one.figures for one in workhold.open(tmp_path / "r.json").seating]
@@ -125,25 +131,27 @@ def test_an_answer_tells_the_seating_of_those_it_keeps(part: bytes, tmp_path: Pa
 def test_what_may_not_come_again_is_no_record(error: Exception, words: str) -> None:
     import re
 
-    outcome = done(Failing("name", "title", error=error))
+    outcome = run_task(Failing("name", "title", error=error))
     assert outcome.record is None and not outcome.has_no_room
     assert re.search(words, outcome.failure)
 
 
 def test_what_would_come_again_is_a_record() -> None:
-    outcome = done(Failing("name", "title", error=InputError("no such face.")))
-    assert outcome.record is not None and plain_record(outcome.record)["refusal"] == "no such face."
+    outcome = run_task(Failing("name", "title", error=InputError("no such face.")))
+    assert outcome.record is not None and parse_record(outcome.record)["refusal"] == "no such face."
 
 
 def test_a_worker_that_is_not_fit_is_no_reason_to_refuse_a_part() -> None:
-    lacking = done(Unprepared("name", "title", error=InputError("no kernels.")))
+    lacking = run_task(Unprepared("name", "title", error=InputError("no kernels.")))
     assert (lacking.record, lacking.failure) == (None, "no kernels.")
-    other = done(Failing("name", "title", program="0.0.1 abc", error=InputError("no such face.")))
+    other = run_task(Failing("name", "title", program="0.0.1 abc", error=InputError("no such face.")))
     assert other.record is None and "another version of workhold" in other.failure
 
 
 def test_a_full_disk_is_told_from_other_failures() -> None:
-    assert done(Failing("name", "title", error=OSError(errno.ENOSPC, "No space left on device"))).has_no_room
+    assert run_task(
+        Failing("name", "title", error=OSError(errno.ENOSPC, "No space left on device"))
+    ).has_no_room
 
 
 def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -160,7 +168,7 @@ def test_names_tell_apart_all_that_has_a_say(monkeypatch: pytest.MonkeyPatch) ->
     }
     assert len(names | {name_of(FINE.entry, 3)}) == 7
     before = name_of(b"a")
-    monkeypatch.setattr(tasks, "program", lambda: "another")
+    monkeypatch.setattr(tasks, "identify_program", lambda: "another")
     assert name_of(b"a") != before
 
 
@@ -168,8 +176,8 @@ def test_names_outlive_what_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> 
     """A docstring of the sources decides nothing; a number of the conventions, or a raised one of answers, does."""
 
     def now() -> str:
-        program.cache_clear()
-        return program()
+        identify_program.cache_clear()
+        return identify_program()
 
     try:
         first = now()
@@ -182,12 +190,15 @@ def test_names_outlive_what_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> 
         assert len({first, other, now()}) == 3
     finally:
         monkeypatch.undo()
-        program.cache_clear()
+        identify_program.cache_clear()
 
 
 def test_other_records_have_another_number(part: bytes) -> None:
     """Where this fails because answers or files have changed, raise ``version.ANSWERS`` and write the new pair here."""
-    records = [part, *(done(Answering("name", "title", part, one.query, 3)).record for one in (COARSE, FINE))]
+    records = [
+        part,
+        *(run_task(Answering("name", "title", part, one.query, 3)).record for one in (COARSE, FINE)),
+    ]
     assert (ANSWERS, sha256(b"".join(records)).hexdigest()[:16]) == (2, "0cd87a47255268de")
 
 
@@ -198,6 +209,6 @@ def test_a_record_cut_short_anywhere_is_none(part: bytes, tmp_path: Path) -> Non
     assert store.has("abcd") and store.read("abcd") == part
     assert Path(store.place("abcd")) == tmp_path / "ab" / "abcd.json"
     for length in range(len(part)):
-        assert not is_whole("abcd", part[:length], checksum("abcd", part))
+        assert not is_whole("abcd", part[:length], make_checksum_line("abcd", part))
     Path(store.place("abcd")).write_bytes(part[:-1])
     assert store.read("abcd") is None and not store.has("abcd")

@@ -15,7 +15,7 @@ import pytest
 from batch_helpers import Fatal, Hanging, Onlooker, ends_at_once
 
 from workhold.batch import workers as module
-from workhold.batch.store import plain_record
+from workhold.batch.store import parse_record
 from workhold.batch.workers import LocalWorkers
 from workhold.errors import InputError
 
@@ -32,7 +32,7 @@ def test_a_task_whose_worker_dies_is_tried_again_and_named_when_it_dies_twice(tm
     assert set(outcomes) == {task.name for task in given}
     for name in ("task0", "task1", "task2", "task4"):
         record = outcomes[name].record
-        assert record is not None and plain_record(record)["refusal"] == f"{name} was done."
+        assert record is not None and parse_record(record)["refusal"] == f"{name} was done."
     assert outcomes["task3"].record is None
     assert outcomes["task3"].failure.startswith(
         "Two workers ended, the last one by signal 9, while they worked on this"
@@ -110,7 +110,7 @@ def test_no_worker_is_started_for_nothing() -> None:
 
 
 def test_workers_that_cannot_be_started_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(module, "worker", ends_at_once)
+    monkeypatch.setattr(module, "run_worker", ends_at_once)
     monkeypatch.setattr(module, "MOST_FAILED_STARTS", 2)
     with (
         LocalWorkers(1, Onlooker()) as queue,

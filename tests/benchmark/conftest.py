@@ -13,8 +13,8 @@ from typing import Any
 import pytest
 
 import workhold
-from workhold.benchmark.catalogue import file_text, set_named
-from workhold.benchmark.making import made_list
+from workhold.benchmark.catalogue import set_named, write_set_text
+from workhold.benchmark.making import make_list
 
 Content = dict[str, Any]
 
@@ -38,9 +38,9 @@ def set_texts() -> Callable[[str], str]:
 
     def text(name: str) -> str:
         if name not in known:
-            made = made_list(set_named(name), threads=1)
+            made = make_list(set_named(name), threads=1)
             assert made is not None
-            known[name] = file_text(*made)
+            known[name] = write_set_text(*made)
         return known[name]
 
     return text

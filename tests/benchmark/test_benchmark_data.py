@@ -15,8 +15,8 @@ import pytest
 
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
 from workhold import answer
-from workhold.benchmark.catalogue import data_bytes, manifest, query_of, sets
-from workhold.benchmark.matching import Places, compared, entered_fixture
+from workhold.benchmark.catalogue import load_manifest, load_sets, make_set_query, read_benchmark_file
+from workhold.benchmark.matching import Places, compare_places, read_entered_fixture
 
 Content = Callable[[str], dict[str, Any]]
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,22 +33,22 @@ def script(name: str) -> Any:
 
 def test_there_are_workpieces_and_sets_enough() -> None:
     """Sixty workpieces or more, each in a set, with its reason, source and licence; every kind of toolkit."""
-    known = manifest()["workpieces"]
+    known = load_manifest()["workpieces"]
     assert len(known) >= 60
-    assert {one.part for one in sets()} == set(known)
+    assert {one.part for one in load_sets()} == set(known)
     assert all(part[key] for part in known.values() for key in ("family", "reason", "source", "licence"))
-    kinds = {(one.toolkit["kind"], one.toolkit.get("clamps", 1)) for one in sets()}
+    kinds = {(one.toolkit["kind"], one.toolkit.get("clamps", 1)) for one in load_sets()}
     assert len(kinds) == 7
-    assert len({one.name for one in sets()}) == len(sets())
+    assert len({one.name for one in load_sets()}) == len(load_sets())
 
 
 @pytest.mark.thorough
 def test_the_workpieces_are_those_of_the_manifest() -> None:
     """Every file has its checksum, and is read."""
-    for name, part in manifest()["workpieces"].items():
-        assert sha256(data_bytes(f"parts/{name}.json")).hexdigest() == part["sha256"]
-    for entry in sets():
-        assert query_of(entry).workpiece.name == entry.part
+    for name, part in load_manifest()["workpieces"].items():
+        assert sha256(read_benchmark_file(f"parts/{name}.json")).hexdigest() == part["sha256"]
+    for entry in load_sets():
+        assert make_set_query(entry).workpiece.name == entry.part
 
 
 def test_the_data_are_small() -> None:
@@ -64,7 +64,7 @@ def test_the_data_are_small() -> None:
 def test_the_schemas_describe_the_files(name: str, content: Content) -> None:
     """A set of every kind is valid, also as another program's entry, and what is forged is not."""
     jsonschema = pytest.importorskip("jsonschema")
-    schema, entry = (json.loads(data_bytes(f"{one}.schema.json")) for one in ("set", "entry"))
+    schema, entry = (json.loads(read_benchmark_file(f"{one}.schema.json")) for one in ("set", "entry"))
     made = content(name)
     made["fixtures"] = made["fixtures"][:50]
     jsonschema.validate(made, schema)
@@ -78,9 +78,9 @@ def test_the_schemas_describe_the_files(name: str, content: Content) -> None:
 @pytest.mark.thorough
 def test_a_set_made_today_is_the_one_of_the_manifest() -> None:
     """Counts of some sets of every family are those of a search."""
-    for entry in sets()[::16]:
+    for entry in load_sets()[::16]:
         if entry.size < 1000:
-            assert answer(query_of(entry), threads=1).counts == dict(entry.counts), entry.name
+            assert answer(make_set_query(entry), threads=1).counts == dict(entry.counts), entry.name
 
 
 def test_the_pages_have_the_figures_of_their_data() -> None:
@@ -95,11 +95,11 @@ def test_the_pages_have_the_figures_of_their_data() -> None:
 def test_the_datasheet_counts_what_there_is() -> None:
     """Sets, workpieces and fixtures are counted as the manifest has them."""
     page = (ROOT / "docs" / "benchmark.md").read_text(encoding="utf-8")
-    assert f"{len(sets())} sets" in page
-    assert f"{len(manifest()['workpieces'])} workpieces" in page
+    assert f"{len(load_sets())} sets" in page
+    assert f"{len(load_manifest()['workpieces'])} workpieces" in page
     assert f"refuses {len(FORGERIES) + len(MANIFEST_ONLY)} kinds of forged files" in page
     for kind, clamps in (("vise", 1), ("edge", 1), ("flat-jaw", 1), ("opening-vise", 1)):
-        of = [e for e in sets() if e.toolkit["kind"] == kind and e.toolkit.get("clamps", 1) == clamps]
+        of = [e for e in load_sets() if e.toolkit["kind"] == kind and e.toolkit.get("clamps", 1) == clamps]
         total, empty = sum(e.size for e in of), sum(e.size == 0 for e in of)
         assert f"| {len(of)} | {total:,} | {empty} |" in page
 
@@ -112,12 +112,12 @@ def test_the_share_of_a_grid_is_what_its_program_finds(tmp_path: Path, content: 
     program = ROOT / "examples" / "grid_search.py"
     words = [sys.executable, str(program), str(path), "--step", "2", "--degrees", "2", "--touch", "0.4"]
     mine = json.loads(subprocess.run(words, capture_output=True, check=True, text=True).stdout)
-    query = next(query_of(one) for one in sets() if one.name == "bar-plate")
+    query = next(make_set_query(one) for one in load_sets() if one.name == "bar-plate")
     complete, theirs = (
-        Places(query.workpiece, [entered_fixture(one) for one in several])
+        Places(query.workpiece, [read_entered_fixture(one) for one in several])
         for several in (content("bar-plate")["fixtures"], mine["fixtures"])
     )
-    outcome = compared(complete, theirs, 2.0, symmetric=False)
+    outcome = compare_places(complete, theirs, 2.0, symmetric=False)
     met = script("grid_share").met(query, answer(query, threads=1).table, 2.0, 0.4)
     assert 0 < int(met.sum()) < 60
     assert len(outcome.found) == int(met.sum())

@@ -14,7 +14,13 @@ import pytest
 
 import workhold
 from benchmark.forgeries import FORGERIES, MANIFEST_ONLY
-from workhold.benchmark.catalogue import digest, file_text, holes_line, manifest, set_named
+from workhold.benchmark.catalogue import (
+    compute_sha256,
+    load_manifest,
+    set_named,
+    write_holes_line,
+    write_set_text,
+)
 
 Content = Callable[[str], dict[str, Any]]
 TRUE = (
@@ -47,8 +53,8 @@ def test_a_true_file_holds(
     The last digits are those of a machine's arithmetic; the holes are the same on all machines.
     """
     lines = [line.rstrip(",") for line in set_texts(name).splitlines() if line.startswith('{"type"')]
-    assert digest("\n".join(map(holes_line, lines))) == set_named(name).sums["holes"]
-    said = checker.check(content(name), set_texts(name), manifest(), starts=200)
+    assert compute_sha256("\n".join(map(write_holes_line, lines))) == set_named(name).sums["holes"]
+    said = checker.check(content(name), set_texts(name), load_manifest(), starts=200)
     assert [one for one in said if one not in OF_LAST_DIGITS] == []
 
 
@@ -77,7 +83,7 @@ def test_the_checksums_refuse_every_forgery(forgery: str, checker: ModuleType, c
     change(forged)
     lines = [json.dumps(one) for one in forged.get("fixtures", [])]
     head = {key: value for key, value in forged.items() if key != "fixtures"}
-    assert checker.check(forged, file_text(head, lines), manifest(), starts=0)
+    assert checker.check(forged, write_set_text(head, lines), load_manifest(), starts=0)
 
 
 def test_there_are_fifty_forgeries() -> None:

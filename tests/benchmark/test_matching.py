@@ -11,9 +11,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from workhold.benchmark.catalogue import query_of, set_named
-from workhold.benchmark.making import compared_entry
-from workhold.benchmark.matching import Comparison, Entry, Places, compared, entered_fixture, read_entry
+from workhold.benchmark.catalogue import make_set_query, set_named
+from workhold.benchmark.making import compare_entry
+from workhold.benchmark.matching import (
+    Comparison,
+    Entry,
+    Places,
+    compare_places,
+    read_entered_fixture,
+    read_entry,
+)
 from workhold.errors import InputError
 
 Content = Callable[[str], dict[str, Any]]
@@ -33,12 +40,12 @@ def compare(
     name: str, fixtures: list[dict[str, Any]], content: Content, symmetric: bool = False
 ) -> Comparison:
     """The comparison of some fixtures with a set."""
-    part = query_of(set_named(name)).workpiece
+    part = make_set_query(set_named(name)).workpiece
     complete, theirs = (
-        Places(part, [entered_fixture(one) for one in several])
+        Places(part, [read_entered_fixture(one) for one in several])
         for several in (content(name)["fixtures"], fixtures)
     )
-    return compared(complete, theirs, TOLERANCE, symmetric)
+    return compare_places(complete, theirs, TOLERANCE, symmetric)
 
 
 def shifted(fixture: dict[str, Any], x: float, y: float) -> dict[str, Any]:
@@ -118,14 +125,14 @@ def test_another_jaw_or_a_quarter_turn_is_another_fixture(content: Content) -> N
 def test_one_stands_for_its_images_where_that_is_asked(content: Content) -> None:
     """A third of the triangle's fixtures finds all of them under its rotations, and else a third."""
     theirs = content("triangle-vise")["fixtures"]
-    part = query_of(set_named("triangle-vise")).workpiece
-    complete = Places(part, [entered_fixture(one) for one in theirs])
+    part = make_set_query(set_named("triangle-vise")).workpiece
+    complete = Places(part, [read_entered_fixture(one) for one in theirs])
     kept: list[dict[str, Any]] = []
     seen: set[int] = set()
     for number, (one, place) in enumerate(zip(theirs, complete.places, strict=True)):
         if number not in seen:
             kept.append(one)
-            for image in complete.images(place):
+            for image in complete.list_images(place):
                 near = [
                     np.abs(image[:, None] - other[None]).max(-1).min(1).max() for other in complete.places
                 ]
@@ -155,7 +162,7 @@ def test_csv_and_json_say_the_same(tmp_path: Path, content: Content) -> None:
     other.write_text(json.dumps({"set": "bar-plate", "fixtures": fixtures}))
     assert read_entry(path) == read_entry(other)
     assert read_entry(path).set_name == "bar-plate"
-    outcome = compared_entry(read_entry(path), TOLERANCE, symmetric=False, threads=1)
+    outcome = compare_entry(read_entry(path), TOLERANCE, symmetric=False, threads=1)
     assert outcome is not None
     assert outcome.share == 1.0
 
@@ -195,6 +202,6 @@ def test_a_table_without_its_columns_is_refused(tmp_path: Path) -> None:
 
 def test_an_empty_set_is_found_whole_by_an_empty_list() -> None:
     """Nothing to find is found."""
-    outcome = compared_entry(Entry("disc-vise", ()), TOLERANCE, symmetric=True, threads=1)
+    outcome = compare_entry(Entry("disc-vise", ()), TOLERANCE, symmetric=True, threads=1)
     assert outcome is not None
     assert (outcome.listed, outcome.share) == (0, 1.0)

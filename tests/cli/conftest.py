@@ -18,7 +18,7 @@ from typer.testing import Result as Outcome
 from fakes import fake_result
 from workhold import Query, Result
 from workhold.cli.main import app
-from workhold.drawing import svg_to_png
+from workhold.drawing import convert_svg_to_png
 
 Run = Callable[..., Outcome]
 
@@ -26,7 +26,7 @@ Run = Callable[..., Outcome]
 @pytest.fixture(autouse=True)
 def small_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw pictures an eighth as wide within this process; how wide they are is tested where they are rendered."""
-    monkeypatch.setattr(svg_to_png, "__defaults__", (300,))
+    monkeypatch.setattr(convert_svg_to_png, "__defaults__", (300,))
     monkeypatch.setattr("workhold.presenting.papers.PNG_WIDTH", 300)
 
 

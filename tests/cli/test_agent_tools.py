@@ -15,7 +15,7 @@ import pytest
 
 import workhold
 from workhold.cli.agent_tools import TOOLS
-from workhold.cli.serving_commands import REQUIREMENT, outcome
+from workhold.cli.serving_commands import REQUIREMENT, run_tool
 
 WEDGE = '{"name": "wedge", "units": "mm", "loops": [[[0, 0, 0], [41, 0, 0], [13, 37, 0]]]}'
 VISE = {"toolkit": "vise", "fields": {"pitch": [15, 15], "columns": 1, "peg_radius": 2}}
@@ -32,7 +32,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def told(name: str, folder: Path, **arguments: Any) -> Any:
     """What a tool says; it must not fail."""
-    data, _, failed = outcome(name, arguments, folder, Event())
+    data, _, failed = run_tool(name, arguments, folder, Event())
     assert not failed, data
     return json.loads(json.dumps(data, allow_nan=False))
 
@@ -76,7 +76,7 @@ def test_seating_is_told_where_it_is_asked_for(folder: Path) -> None:
     assert "seating" not in shown[1]["fixture"]
     told("sheet", folder, result_file="some.json", rank=3, path="setup.svg", seating=True)
     assert "Does the part end up there?" in Path("setup.svg").read_text()
-    data, _, failed = outcome("design", {"part": "wedge.json", **VISE, "foolproof": True}, folder, Event())
+    data, _, failed = run_tool("design", {"part": "wedge.json", **VISE, "foolproof": True}, folder, Event())
     assert failed and "such as seating 100" in json.dumps(data)
 
 
@@ -133,9 +133,9 @@ def test_a_search_that_is_ended_says_so(folder: Path) -> None:
     """Neither proves that there is none."""
     cancel = Event()
     cancel.set()
-    data, _, failed = outcome("design", {"part": "wedge.json", **VISE}, folder, cancel)
+    data, _, failed = run_tool("design", {"part": "wedge.json", **VISE}, folder, cancel)
     assert not failed and isinstance(data, dict) and data["complete"] is False
-    data, _, failed = outcome("explain", {"part": "wedge.json", **VISE}, folder, cancel)
+    data, _, failed = run_tool("explain", {"part": "wedge.json", **VISE}, folder, cancel)
     assert (
         not failed and isinstance(data, dict) and not data["complete"] and "ended before" in data["sentence"]
     )
@@ -170,12 +170,12 @@ def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
         ("load", {"part": "wedge.json"}),
         ("design", {"part": "wedge.json", **VISE, "out": "w.json"}),
     ):
-        assert outcome(name, asked, folder, Event())[1] is None
-        _, picture, _ = outcome(
+        assert run_tool(name, asked, folder, Event())[1] is None
+        _, picture, _ = run_tool(
             name, {**asked, "picture": True, **({"force": True} if name == "design" else {})}, folder, Event()
         )
         assert b64decode(picture or "").startswith(b"\x89PNG")
-    assert outcome("show", {"result_file": "w.json"}, folder, Event())[1] is not None
+    assert run_tool("show", {"result_file": "w.json"}, folder, Event())[1] is not None
 
 
 @pytest.mark.parametrize(
@@ -219,7 +219,7 @@ def test_pictures_are_shown_where_asked_for(folder: Path) -> None:
 def test_errors_are_sentences(name: str, arguments: dict[str, Any] | None, words: str, folder: Path) -> None:
     """One, without a line break or an option of the command line."""
     Path("other.txt").write_text("somebody's own")
-    data, picture, failed = outcome(name, arguments, folder, Event())
+    data, picture, failed = run_tool(name, arguments, folder, Event())
     assert failed and picture is None and isinstance(data, str)
     assert words in data and data.endswith(".") and "\n" not in data and "--" not in data
 
@@ -229,7 +229,7 @@ def test_a_fault_is_owned_up_to(folder: Path, monkeypatch: pytest.MonkeyPatch) -
         raise KeyError("secret\nlines")
 
     monkeypatch.setattr("workhold.cli.agent_tools.read_workpiece", broken)
-    data, _, failed = outcome("load", {"part": "wedge.json"}, folder, Event())
+    data, _, failed = run_tool("load", {"part": "wedge.json"}, folder, Event())
     assert (
         failed
         and str(data).startswith("workhold has a mistake, which is not yours (KeyError")
@@ -333,7 +333,7 @@ def test_a_program_and_its_forces(folder: Path) -> None:
     assert any("line 6, T1 (end mill, milling from X" in one for one in shown), shown
     opened = workhold.open("p.json").query.program
     assert opened is not None and opened.stock is not None and opened.stock.side == 0.0
-    refused, _, failed = outcome(
+    refused, _, failed = run_tool(
         "design", {"part": "wedge.json", **VISE, "program": {"path": "p.nc"}}, folder, Event()
     )
     assert failed and "give the part's thickness" in str(refused)

@@ -10,7 +10,7 @@ import ezdxf
 import pytest
 
 from workhold import Plate, Query, Workpiece, answer, save
-from workhold.family.copies import packing_of
+from workhold.family.copies import pack_copies
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -24,7 +24,7 @@ def test_copies_are_told_and_drawn_or_refused(run: Any, tmp_path: Path) -> None:
     save(result, file, "json")
     outcome = run("copies", file, 1, "--columns", 12, "--rows", 9, "--draw", picture)
     assert outcome.exit_code == 0, outcome.stderr
-    packing = packing_of(result[0], result.workpiece, result.toolkit, 12, 9)
+    packing = pack_copies(result[0], result.workpiece, result.toolkit, 12, 9)
     count = len(packing.shifts)
     assert f"{count} copies on a plate of 12 columns and 9 rows; no more fit" in outcome.stdout
     assert picture.read_bytes().startswith(b"\x89PNG")

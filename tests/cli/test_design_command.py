@@ -398,7 +398,7 @@ def test_a_file_that_is_too_large_as_text_is_refused_beforehand(
     assert searched["asked"] is None and not Path("r.json").exists()
     asked = []
     monkeypatch.setattr(
-        design_command, "answered", lambda query, *_, **__: asked.append(query) or searched["result"]
+        design_command, "search_and_stream", lambda query, *_, **__: asked.append(query) or searched["result"]
     )
     assert run("design", "widget", *VISE, "--out", "r.npz", "--all").exit_code == 0
     assert [query.best for query in asked] == [None]

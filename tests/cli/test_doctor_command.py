@@ -45,7 +45,7 @@ def installation(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(metadata, "requires", lambda _: REQUIRES)
     monkeypatch.setattr(metadata, "version", version)
     monkeypatch.setattr(installed_commands, "find_spec", lambda name: name if name in MODULES else None)
-    monkeypatch.setattr(installed_commands, "step_fault", lambda: "apt install libgl1")
+    monkeypatch.setattr(installed_commands, "find_step_fault", lambda: "apt install libgl1")
 
 
 def findings() -> dict[str, tuple[str, str | None]]:
@@ -79,7 +79,7 @@ def test_the_report_is_read_by_people(installation: None) -> None:
 
 def test_what_is_missing_is_red_on_a_terminal(installation: None) -> None:
     """And nothing else is."""
-    shown = installed_commands.table(
+    shown = installed_commands.tabulate_findings(
         [
             installed_commands.InstallationRow("a", "1.0", "x"),
             installed_commands.InstallationRow("b", "missing", "y", "pip install b"),
@@ -103,7 +103,7 @@ def test_the_python_that_is_looked_at_is_named() -> None:
 
 
 def test_nothing_is_to_add_where_all_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(installed_commands, "extras", lambda is_built: iter(()))
+    monkeypatch.setattr(installed_commands, "find_extras", lambda is_built: iter(()))
     monkeypatch.setattr(libraries, "find_in", lambda folder, room: folder)
     assert "To add" not in CliRunner().invoke(app, ["doctor"]).stdout
 

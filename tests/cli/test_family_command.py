@@ -10,7 +10,7 @@ import pytest
 
 from family_parts import shop_parts
 from workhold.cli import family_command
-from workhold.family.members import loss_text
+from workhold.family.members import format_loss
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -36,7 +36,7 @@ def test_curve_plan_and_file(
     run: Any, drawings: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "f.json"
-    monkeypatch.setattr("workhold.cli.table.width_of", lambda stream: 80)
+    monkeypatch.setattr("workhold.cli.table.find_terminal_width", lambda stream: 80)
     outcome = run("family", drawings, *VISE, "--setups", 2, "--out", out)
     assert outcome.exit_code == 0, outcome.stderr
     assert "disc.json is left out: it has no fixture in this vise." in outcome.stderr
@@ -46,7 +46,7 @@ def test_curve_plan_and_file(
     data = json.loads(out.read_text())["family"]
     rows = [line.split() for line in lines[2 : 2 + len(data["curve"])]]
     for row, point in zip(rows, data["curve"], strict=True):
-        assert row[:3] == [str(point["setups"]), loss_text(point["loss"]), str(point["pegs_moved"])]
+        assert row[:3] == [str(point["setups"]), format_loss(point["loss"]), str(point["pegs_moved"])]
     assert "3 parts, " in outcome.stdout
     shown = [point for point in data["curve"] if point["setups"] <= 2][-1]
     assert sum(line.startswith("Set-up ") for line in lines) == shown["setups"]
@@ -138,7 +138,7 @@ def asked_by(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
         seen.update(options, asked=asked)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("workhold.family.family.family_of", family_of)
+    monkeypatch.setattr("workhold.family.family.make_family", family_of)
     return seen
 
 
@@ -231,7 +231,7 @@ def test_too_few_set_ups_are_refused_with_how_many_are_needed(
 
 
 def test_losses_are_shown_as_bounds_that_hold() -> None:
-    assert [loss_text(loss) for loss in (1.0, 1.0000000001, 1.1871, 2.5, float("inf"))] == [
+    assert [format_loss(loss) for loss in (1.0, 1.0000000001, 1.1871, 2.5, float("inf"))] == [
         *("1.000", "1.000", "1.188", "2.500", "any")
     ]
-    assert family_command.loss_of("1.25") == 1.25
+    assert family_command.read_largest_loss("1.25") == 1.25

@@ -14,7 +14,7 @@ import workhold
 from fakes import fake_proof, fake_result
 from workhold import save
 from workhold.cli.main import COMMANDS
-from workhold.presenting.data import part_data
+from workhold.presenting.data import describe_part
 
 # Commands whose only output is a text for another program, or a page.
 NO_TABLES = {"completion", "mcp", "serve", "workbench"}
@@ -112,7 +112,7 @@ def test_arcs_tell_their_circle() -> None:
     ring = workhold.Workpiece.from_loops(
         "ring", [[[0, 0, 0], [60, 0, 0], [60, 40, 0]], [[40, 15, -1], [44, 15, -1]]]
     )
-    face = part_data(ring)["faces"][-1]
+    face = describe_part(ring)["faces"][-1]
     assert (face["kind"], face["loop"], face["concave"], face["radius"], face["sweep_deg"]) == (
         "arc",
         1,
@@ -180,7 +180,7 @@ def test_forces_without_end_are_nothing(run: Any, folder: Path) -> None:
     result = fake_result(1)
     quality = result.table.quality.copy()
     quality[0, 0] = inf
-    from workhold.presenting.data import fixture_data
+    from workhold.presenting.data import describe_fixture
 
     fixture = attrs.evolve(result, table=attrs.evolve(result.table, quality=quality))[0]
-    assert None in fixture_data(fixture, result.toolkit)["quality"].values()
+    assert None in describe_fixture(fixture, result.toolkit)["quality"].values()

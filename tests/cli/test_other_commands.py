@@ -14,7 +14,7 @@ from fakes import fake_result
 from glb_reading import fixture_glb
 from workhold import __version__, save
 from workhold import open as open_result
-from workhold.cli.main import COMMANDS, command_of
+from workhold.cli.main import COMMANDS, import_command
 from workhold.model.bodies import BodySizes
 
 
@@ -139,7 +139,7 @@ def test_version_and_help(run: Any) -> None:
 @pytest.mark.parametrize("name", COMMANDS)
 def test_the_help_of_all_begins_like_that_of_each(run: Any, name: str) -> None:
     """What stands for a command that is not imported is what the command says of itself."""
-    function = command_of(name)
+    function = import_command(name)
     assert " ".join(cleandoc(function.__doc__).split("\n\n")[0].split()) == COMMANDS[name]
     assert COMMANDS[name].split()[:3] == run(name, "--help").stdout.split("\n\n")[1].split()[:3]
 

@@ -11,7 +11,7 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Workpiece
-from workhold.drawing.sheet_writing import lift_of
+from workhold.drawing.sheet_writing import find_part_lift
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.model.support_bodies import size_supported_bodies
 from workhold.model.support_triples import ChosenSupports
@@ -54,7 +54,11 @@ def test_a_result_keeps_them_and_supports_sheet_and_bodies_use_them(
         and size_supported_bodies(found, support_height=7).floor == -7
     )
     chosen = ChosenSupports.of(found)
-    assert (lift_of(chosen, None), lift_of(chosen, 7.0), lift_of(None, None)) == (12, 7, 0)
+    assert (find_part_lift(chosen, None), find_part_lift(chosen, 7.0), find_part_lift(None, None)) == (
+        12,
+        7,
+        0,
+    )
     sheet = tmp_path / "sheet.svg"
     made = run("sheet", result_file, "1", "--supports", "--thickness", "12", "-o", sheet)
     assert made.exit_code == 0, made.stderr

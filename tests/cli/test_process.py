@@ -47,9 +47,9 @@ STUBBORN = "options['progress'](0.1, 3); print('found', flush=True); cancel.wait
 DEAF = """
     import threading
     from pathlib import Path
-    from workhold.files.atomic import text_file
+    from workhold.files.atomic import write_text_file
     threading.Thread(target=time.sleep, args=(60,)).start()
-    with text_file(Path("half.txt")) as stream:
+    with write_text_file(Path("half.txt")) as stream:
         stream.write("half")
         stream.flush()
         print("deaf", flush=True)

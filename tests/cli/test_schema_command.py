@@ -18,7 +18,7 @@ from fakes import fake_proof, fake_result
 from workhold.cli.main import app
 from workhold.errors import InputError
 from workhold.files.loads_file import read_loads
-from workhold.files.result.writer import result_text
+from workhold.files.result.writer import write_result_text
 
 jsonschema = pytest.importorskip("jsonschema_rs", reason="schemathesis, which brings it, is not installed")
 ROOT = Path(__file__).parent.parent.parent
@@ -58,9 +58,9 @@ def results() -> Iterator[Any]:
     for toolkit in (*clamped, *fences, *flats):
         result = workhold.design(bar, toolkit, best=3, seating=2 if toolkit.travels > 1 else None)
         assert len(result)
-        yield json.loads("".join(result_text(result)))
-    yield json.loads("".join(result_text(fake_result(3, proof=fake_proof(2)))))
-    yield json.loads("".join(result_text(fake_result(0))))
+        yield json.loads("".join(write_result_text(result)))
+    yield json.loads("".join(write_result_text(fake_result(3, proof=fake_proof(2)))))
+    yield json.loads("".join(write_result_text(fake_result(0))))
 
 
 RESULTS = list(results())

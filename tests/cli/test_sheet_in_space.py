@@ -15,8 +15,8 @@ from typer.testing import Result as Outcome
 
 import workhold
 from workhold import Plate, Restrictions, Workpiece
-from workhold.cli.setup_sheets import first_sheet
-from workhold.listing.identity import entries
+from workhold.cli.setup_sheets import write_first_sheet
+from workhold.listing.identity import make_entries
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
 
@@ -246,7 +246,7 @@ def test_pegs_of_a_program_are_as_high_above_the_part_as_on_its_supports(run: Ru
 def test_a_fixture_like_an_earlier_one_may_be_the_first_on_supports(monkeypatch: pytest.MonkeyPatch) -> None:
     """It stands in other holes, so three supports may find room where they find none under the earlier one."""
     result = workhold.design(side("z", [(1,), (2,), (3,), (4,)], False), Plate(20, 3, columns=6, rows=5))
-    firsts = set(entries(result).index.tolist())
+    firsts = set(make_entries(result).index.tolist())
     rank = next(number for number in range(1, len(result) + 1) if number - 1 not in firsts)
     asked: list[int] = []
 
@@ -258,5 +258,5 @@ def test_a_fixture_like_an_earlier_one_may_be_the_first_on_supports(monkeypatch:
     monkeypatch.setattr("workhold.supports.asking.yield_supports", found)
     monkeypatch.setattr("workhold.model.support_triples.ChosenSupports.of", lambda found: found)
     monkeypatch.setattr("workhold.presenting.papers.write_paper", lambda *_: None)
-    assert first_sheet(result, "a.pdf", "-", 20.0, MILLIMETRE, None) == rank
+    assert write_first_sheet(result, "a.pdf", "-", 20.0, MILLIMETRE, None) == rank
     assert asked == list(range(1, rank + 1))

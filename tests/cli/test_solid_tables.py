@@ -5,9 +5,9 @@ from __future__ import annotations
 from attrs import evolve
 
 from workhold import Workpiece
-from workhold.cli.tables import other_heights
+from workhold.cli.tables import suggest_other_heights
 from workhold.model.solid import HeightRow, SolidOutline
-from workhold.units import MILLIMETRE, unit_named
+from workhold.units import MILLIMETRE, find_unit
 
 SQUARE = [[0, 0, 0], [40, 0, 0], [40, 40, 0], [0, 40, 0]]
 ROWS = [
@@ -28,13 +28,13 @@ def standing(axis: str) -> Workpiece:
 
 def test_heights_with_most_to_touch_are_named_and_the_other_side() -> None:
     """Not the height that was asked for, and none that touches nothing; each in the unit of the command."""
-    (said,) = other_heights(standing("z"), ROWS, MILLIMETRE)
+    (said,) = suggest_other_heights(standing("z"), ROWS, MILLIMETRE)
     assert "--peg-height 12.700, --peg-height 3.000, --peg-height 19.000, or its other side up" in said
     assert "(--axis=-z)" in said and "20.000" not in said and "15.000" not in said
-    assert "--peg-height 0.5000" in other_heights(standing("z"), ROWS, unit_named("inch"))[0]
-    (said,) = other_heights(standing("-y"), [], MILLIMETRE)
+    assert "--peg-height 0.5000" in suggest_other_heights(standing("z"), ROWS, find_unit("inch"))[0]
+    (said,) = suggest_other_heights(standing("-y"), [], MILLIMETRE)
     assert "--peg-height" not in said and "(--axis=y)" in said
-    assert not other_heights(Workpiece.from_loops("plate", [SQUARE]), ROWS, MILLIMETRE)
+    assert not suggest_other_heights(Workpiece.from_loops("plate", [SQUARE]), ROWS, MILLIMETRE)
 
 
 def test_a_shaft_that_lies_is_said_to_slide_whatever_its_pegs() -> None:
@@ -47,12 +47,12 @@ def test_a_shaft_that_lies_is_said_to_slide_whatever_its_pegs() -> None:
     ):
         solid = SolidOutline("z", 20.0, 20.0, 0.5, 1.0, bands)
         shaft = Workpiece.from_loops("shaft", [SQUARE], solid=solid)
-        (said,) = other_heights(shaft, sliding, MILLIMETRE)
+        (said,) = suggest_other_heights(shaft, sliding, MILLIMETRE)
         assert ("parallel to one another" in said and "vee blocks" in said) == slides
         assert ("--peg-height" in said) != slides
-        (said,) = other_heights(shaft, [*sliding[:1], ROWS[1], *sliding[2:]], MILLIMETRE)
+        (said,) = suggest_other_heights(shaft, [*sliding[:1], ROWS[1], *sliding[2:]], MILLIMETRE)
         assert "--peg-height 12.700" in said and "vee blocks" not in said
         assert ("--peg-height 3.000" in said) != slides
     solid = SolidOutline("z", 20.0, 20.0, 0.5, 1.0, [(0.0, 20.0)] * 2)
     disc = Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]], solid=solid)
-    assert "parallel" not in other_heights(disc, ROWS, MILLIMETRE)[0]
+    assert "parallel" not in suggest_other_heights(disc, ROWS, MILLIMETRE)[0]

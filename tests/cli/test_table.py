@@ -11,7 +11,7 @@ import pytest
 
 from fakes import fake_result
 from workhold import save
-from workhold.cli.table import Table, width_of
+from workhold.cli.table import Table, find_terminal_width
 
 LONG = "a file name that says what machine, what side and what operation it is for"
 
@@ -27,13 +27,13 @@ def table(spare: int = 0) -> Table:
 
 def test_without_a_limit_every_row_is_one_line() -> None:
     """Headings, a rule, and the rows."""
-    assert [line.split()[0] for line in table().lines()] == ["name", "─" * 76, "one", "two"]
+    assert [line.split()[0] for line in table().format_lines()] == ["name", "─" * 76, "one", "two"]
 
 
 @pytest.mark.parametrize("width", [50, 60, 75, 76, 200])
 def test_a_table_is_no_wider_than_there_is_room_and_loses_no_word(width: int) -> None:
     """Headings and the last column take several lines; what is red stays red on all of them."""
-    fitted = table().fitted(width)
+    fitted = table().fit_to_width(width)
     lines = [*fitted.headings, *fitted.lines]
     assert max(map(len, lines)) <= width
     words = " ".join(lines).split()
@@ -44,12 +44,12 @@ def test_a_table_is_no_wider_than_there_is_room_and_loses_no_word(width: int) ->
 
 def test_spare_columns_are_left_out_and_named() -> None:
     """Only where there is no room for them."""
-    fitted = table(spare=1).fitted(40)
+    fitted = table(spare=1).fit_to_width(40)
     said = " ".join(fitted.lines)
     assert "No room for: what it is. A wider terminal" in said and "--json" in said
     assert max(map(len, fitted.lines)) <= 40
     assert "plate" not in " ".join(fitted.lines)
-    assert "plate" in " ".join(table(spare=1).fitted(76).lines)
+    assert "plate" in " ".join(table(spare=1).fit_to_width(76).lines)
 
 
 @pytest.mark.parametrize("spare", [0, 1, 3])
@@ -60,7 +60,7 @@ def test_any_table_fits_and_cuts_no_number(width: int, spare: int) -> None:
     table = Table(("part", *(f">figure {k} mm" for k in range(8)), "words"), spare=spare)
     table.add_row(LONG, *numbers, LONG)
     table.add_row("short", *reversed(numbers), "x" * 200)
-    fitted = table.fitted(width)
+    fitted = table.fit_to_width(width)
     lines = [*fitted.headings, *fitted.lines]
     assert max(map(len, lines)) <= width
     said = " ".join(" ".join(lines).split())
@@ -73,7 +73,7 @@ def test_a_word_wider_than_the_terminal_is_broken_and_keeps_its_letters() -> Non
     """As the name of a file without blanks may be."""
     table = Table(("file", ">figure mm"))
     table.add_row("part" * 30, "1.5")
-    fitted = table.fitted(50)
+    fitted = table.fit_to_width(50)
     assert max(map(len, fitted.lines)) <= 50 and "1.5" in fitted.lines[1]
     assert "".join("".join(fitted.lines[1:]).replace("1.5", "").split()) == "part" * 30
 
@@ -82,16 +82,16 @@ def test_without_a_limit_nothing_is_left_out_or_wrapped() -> None:
     """What is piped keeps every column on one line."""
     table = Table(("part", ">figure mm", "words"), spare=2)
     table.add_row(LONG, "1.5", LONG)
-    assert len(table.lines()) == 3 and table.lines()[2].count(LONG) == 2
+    assert len(table.format_lines()) == 3 and table.format_lines()[2].count(LONG) == 2
 
 
 def test_a_terminal_that_nobody_has_told_its_size_has_no_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("COLUMNS", raising=False)
     ours, theirs = os.openpty()
     with os.fdopen(theirs, "w") as terminal:
-        assert width_of(terminal) is None
+        assert find_terminal_width(terminal) is None
         termios.tcsetwinsize(theirs, (24, 80))
-        assert width_of(terminal) == 80
+        assert find_terminal_width(terminal) == 80
     os.close(ours)
 
 

@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 
-from workhold.cli.toolkit_options import LISTED, ListWords, toolkits_to_try
+from workhold.cli.toolkit_options import LISTED, ListWords, list_toolkits_to_try
 from workhold.errors import InputError
-from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.files.toolkit_file import list_preset_names, load_toolkit
 from workhold.fixels.fields import OPTIONS
-from workhold.fixels.kinds import KINDS, TABLES, toolkit_of
+from workhold.fixels.kinds import KINDS, TABLES, make_toolkit
 from workhold.units import INCH, MILLIMETRE
 
 # A list that each form of field can have, and what becomes of it in mm.
@@ -59,8 +59,8 @@ def test_a_field_of_a_kind_is_varied(kind: str, row: Any) -> None:
     Of a kind without holes it makes one of each preset.
     """
     text, values = TYPED[row.form]
-    tried = toolkits_to_try(None, kind, lists(kind, **{row.name: text}), MILLIMETRE)
-    bases = 1 if has_pitch(kind) else sum(load_toolkit(name).kind == kind for name in preset_names())
+    tried = list_toolkits_to_try(None, kind, lists(kind, **{row.name: text}), MILLIMETRE)
+    bases = 1 if has_pitch(kind) else sum(load_toolkit(name).kind == kind for name in list_preset_names())
     assert [one.fields[row.name] for one in tried] == bases * values
     assert len({one.name for one in tried}) == 2 * bases > 0 and {one.kind for one in tried} == {kind}
 
@@ -70,19 +70,19 @@ def test_a_field_of_a_kind_is_varied(kind: str, row: Any) -> None:
 )
 def test_what_is_varied_makes_toolkits(kind: str, more: dict[str, str]) -> None:
     """A fence with two offsets of its wall, and a plate with one clamp and with two."""
-    tried = toolkits_to_try(None, kind, lists(kind, clamp_radius="3,5", **more), MILLIMETRE)
-    assert len({toolkit_of(one.kind, one.fields) for one in tried}) == 4
+    tried = list_toolkits_to_try(None, kind, lists(kind, clamp_radius="3,5", **more), MILLIMETRE)
+    assert len({make_toolkit(one.kind, one.fields) for one in tried}) == 4
 
 
 def test_lengths_have_the_unit_that_is_asked() -> None:
     """Half an inch is 12.7 mm."""
-    (one,) = toolkits_to_try(["fence-20mm"], None, ListWords(wall_offset="0.5"), INCH)
+    (one,) = list_toolkits_to_try(["fence-20mm"], None, ListWords(wall_offset="0.5"), INCH)
     assert one.fields["wall_offset"] == pytest.approx(12.7) and one.name == "fence-20mm, wall offset 0.5"
 
 
 def test_presets_without_a_varied_field_are_not_tried() -> None:
     """A wall's offset is varied of the fence among the presets alone."""
-    tried = toolkits_to_try(None, None, ListWords(wall_offset="8,10"), MILLIMETRE)
+    tried = list_toolkits_to_try(None, None, ListWords(wall_offset="8,10"), MILLIMETRE)
     assert [one.name for one in tried] == ["fence-20mm, wall offset 8", "fence-20mm, wall offset 10"]
 
 
@@ -93,7 +93,7 @@ def test_a_field_that_a_kind_does_not_have_is_refused(kind: str) -> None:
     for row in LISTED:
         if row.name not in known:
             with pytest.raises(InputError, match=rf"^{row.option} is of \w.*{TABLES[kind].noun} has no \w"):
-                toolkits_to_try(None, kind, lists(kind, **{row.name: TYPED[row.form][0]}), MILLIMETRE)
+                list_toolkits_to_try(None, kind, lists(kind, **{row.name: TYPED[row.form][0]}), MILLIMETRE)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from svg_reading import texts
 
 from fakes import fake_result
 from workhold import save
-from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.files.toolkit_file import list_preset_names, load_toolkit
 from workhold.units import INCH
 
 ROOT = Path(__file__).parent.parent.parent
@@ -123,13 +123,13 @@ def test_a_drawing_without_a_unit_is_in_that_of_the_command(run: Any, tmp_path: 
 def test_parts_and_vises_in_inches(run: Any) -> None:
     rows = [line.split() for line in run("toolkits", "--unit", "inch").stdout.splitlines()]
     assert rows[0][:4] == ["name", "pitch", "in", "peg"]
-    assert [row[0] for row in rows[2:]] == list(preset_names())
+    assert [row[0] for row in rows[2:]] == list(list_preset_names())
     assert next(row for row in rows if row[0] == "plate-one-inch")[1:4] == ["1", "0.25", "3"]
     assert "width in" in run("parts", "--unit", "in").stdout
     assert "pitch mm" in run("toolkits").stdout
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", list_preset_names())
 def test_every_vise_is_shown_with_its_source(run: Any, name: str) -> None:
     outcome = run("toolkits", name)
     assert outcome.exit_code == 0, outcome.stderr
@@ -197,18 +197,18 @@ def test_the_vise_file_of_the_manual(tmp_path: Path) -> None:
 def test_the_manual_lists_every_preset() -> None:
     """The table has a row for each preset with its pitch, peg and columns."""
     page = (ROOT / "docs" / "hardware.md").read_text()
-    for name in preset_names():
+    for name in list_preset_names():
         loaded = load_toolkit(name)
         if not loaded.toolkit.plates:
             assert f"`{name}`" in page
             continue
         unit, first = loaded.unit, loaded.toolkit.plates[0]
-        pitch, peg = unit.figure(first.pitch[0]), unit.figure(2 * first.peg_radius)
+        pitch, peg = unit.format_short_length(first.pitch[0]), unit.format_short_length(2 * first.peg_radius)
         of = unit.abbreviation
         assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {first.columns or 'any'} |" in page
     kinds = ("plate-", "table-", "gripper-", "clamp-", "fence-", "two-clamp-", "machine-vise-")
     assert sum(page.count(f"\n| `{kind}") for kind in kinds) == sum(
-        bool(load_toolkit(name).toolkit.plates) for name in preset_names()
+        bool(load_toolkit(name).toolkit.plates) for name in list_preset_names()
     )
 
 
@@ -243,7 +243,7 @@ def test_a_toolkit_in_inches_is_shown_in_inches(
 
 def test_inches_are_told_by_the_holes() -> None:
     """Eighths of an inch that are no whole or half millimetres."""
-    for name in preset_names():
+    for name in list_preset_names():
         assert load_toolkit(name).toolkit.is_in_inches == (load_toolkit(name).unit is INCH)
 
 
@@ -270,7 +270,7 @@ def test_somebody_at_a_terminal_is_asked(
     run: Callable[..., Any], drawing: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The answer is the drawing's unit; one that is none is refused."""
-    monkeypatch.setattr("workhold.cli.options.at_terminal", lambda: True)
+    monkeypatch.setattr("workhold.cli.options.is_at_terminal", lambda: True)
     answers = iter(["inch", "ell"])
     monkeypatch.setattr(typer, "prompt", lambda *words, **more: next(answers))
     outcome = run("features", drawing)

@@ -49,7 +49,7 @@ def test_the_bar_tells_how_much_is_done(built: list[Sequence[str]], monkeypatch:
         def __exit__(self, *error: object) -> None:
             told.append("end")
 
-    monkeypatch.setattr(warming, "progress_bar", Bar)
+    monkeypatch.setattr(warming, "show_progress", Bar)
     warming.compile_kernels(Event())
     (words, *steps) = told
     assert words[0] == words[2] == warming.WORDS and steps == [(0.5, 50), (1.0, 100), "end"]

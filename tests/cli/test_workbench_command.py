@@ -13,11 +13,11 @@ import pytest
 from workhold import Workpiece, errors
 from workhold.cli.workbench_command import (
     WorkbenchOrder,
-    avoided,
-    body_data,
-    hear_the_end,
-    marks_of,
+    convert_body_to_prisms,
+    identify_fixture,
+    list_avoided_segments,
     rank_in,
+    watch_for_cancel,
 )
 from workhold.geometry.segment import Arc
 from workhold.model.bodies import BodyKind, FixtureBody, Slab
@@ -32,7 +32,7 @@ def listed(
 
 def test_a_fixture_is_known_by_its_holes_and_how_the_part_lies() -> None:
     """Turned by half a turn in the same holes is another one; a few degrees are not."""
-    marks = marks_of(listed(178.0))
+    marks = identify_fixture(listed(178.0))
     others = [
         listed(357.0),
         listed(190.0),
@@ -60,9 +60,9 @@ def test_an_order_of_another_version_is_a_sentence(tmp_path: Path) -> None:
 
 def test_faces_of_no_solid_cannot_be_named() -> None:
     plate = Workpiece.from_points("plate", [(0, 0), (30, 0), (30, 20), (0, 20)])
-    assert avoided(WorkbenchOrder(), plate) == []
+    assert list_avoided_segments(WorkbenchOrder(), plate) == []
     with pytest.raises(errors.InputError, match="has no faces of its solid"):
-        avoided(WorkbenchOrder(avoid={"Face1": 0}), plate)
+        list_avoided_segments(WorkbenchOrder(avoid={"Face1": 0}), plate)
 
 
 def test_a_search_ends_when_the_workbench_does(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -72,7 +72,7 @@ def test_a_search_ends_when_the_workbench_does(monkeypatch: pytest.MonkeyPatch) 
     with os.fdopen(reader) as stream:
         monkeypatch.setattr("sys.stdin", stream)
         cancel = Event()
-        hear_the_end(cancel)
+        watch_for_cancel(cancel)
     assert cancel.is_set()
 
 
@@ -81,7 +81,7 @@ def test_bodies_are_prisms_with_their_holes() -> None:
     square = Workpiece.from_points("plate", [(0, 0), (30, 0), (30, 20), (0, 20)]).loop_segments[0]
     hole = (Arc((10.0, 8.0), 2.0, 0.5, 0.25, -1.0),)
     body = FixtureBody("plate", BodyKind.PLATE, (Slab(square, (hole,), -10.0, 0.0),))  # type: ignore[arg-type]
-    data = body_data(body)
+    data = convert_body_to_prisms(body)
     (slab,) = data["slabs"]
     assert (data["name"], slab["low"], slab["high"]) == ("plate", -10.0, 0.0)
     outer, inner = slab["borders"]

@@ -167,8 +167,8 @@ def test_a_joint_is_tangent_to_within_a_few_digits_of_a_bulge(turn, tangent):
     # Point pegs: their features end at the corners themselves.
     assert (end_slacks(list_contact_features(half, 0.0)) > 0).any() == tangent
     with exactly():
-        outline = BallOutline.of(half)
-    assert outline.smooth_ends(2, has_flat=False) == (tangent, tangent)
+        outline = BallOutline.from_workpiece(half)
+    assert outline.find_smooth_ends(2, has_flat=False) == (tangent, tangent)
 
 
 @pytest.mark.parametrize("bulge", [2e-6, -2.1e-6, 1e-5, -3e-4, 4e-3])

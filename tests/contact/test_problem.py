@@ -80,7 +80,9 @@ def turned_carrier(carrier: Carrier, quarters: int) -> Carrier:
 def pegs_of(result: Result) -> np.ndarray:
     """Places of all pegs (N, 4) as complex numbers."""
     table = result.table
-    x, y = result.toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+    x, y = result.toolkit.compute_hole_places(
+        table.arrangement, table.column, table.row, table.jaw_separation
+    )
     return x + 1j * y
 
 
@@ -153,7 +155,7 @@ def test_pegs_of_two_radii_touch_features_of_their_own() -> None:
     assert len(thin) > 0
     turn = np.exp(-1j * thin.table.theta)[:, None]
     place = (pegs_of(thin) - (thin.table.position @ (1, 1j))[:, None]) * turn - complex(*PART.center)
-    moves = thin.toolkit.peg_carriers(thin.table.arrangement)
+    moves = thin.toolkit.find_peg_carriers(thin.table.arrangement)
     ends = measure_quality(thin.table, PART, thin.toolkit)[:, END_DISTANCE]
     for k in range(len(thin)):
         own = []

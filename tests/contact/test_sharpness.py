@@ -15,7 +15,7 @@ from sharpness import Constant, check_sharpness
 from strategies import random_outline
 from workhold import Query, Vise, Workpiece
 from workhold.contact.problem import Problem
-from workhold.verification.ball_geometry import LineSide, Point, norm, vertex_side
+from workhold.verification.ball_geometry import LineSide, Point, compute_norm, make_side_at_vertex
 
 
 def features_off(random: Random, kernel: Callable[..., Any]) -> float:
@@ -32,14 +32,14 @@ def features_off(random: Random, kernel: Callable[..., Any]) -> float:
             # Faces of several segments are joined by a tolerance of their own.
             if len(faces[face].segments) == 1:
                 one, other = vertices[face]
-                side = vertex_side(tuple(one), tuple(other))
+                side = make_side_at_vertex(tuple(one), tuple(other))
                 at: Point = (arb(row[1]) + part.center[0], arb(row[2]) + part.center[1])
                 if isinstance(side, LineSide):
                     ends = ((at[0] + s * row[5] * row[3], at[1] + s * row[5] * row[4]) for s in (-1, 1))
-                    off = [abs(side.gap(end) - radius) for end in ends]
+                    off = [abs(side.compute_gap(end) - radius) for end in ends]
                 else:
                     grown = side.radius + side.sign * radius - row[6]
-                    off = [norm((at[0] - side.center[0], at[1] - side.center[1])) + abs(grown)]
+                    off = [compute_norm((at[0] - side.center[0], at[1] - side.center[1])) + abs(grown)]
                 worst = max(worst, *(float(v.upper()) for v in off))
     return worst / float(kernel(problem))
 

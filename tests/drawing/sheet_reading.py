@@ -8,7 +8,7 @@ from math import hypot
 
 from svg_reading import NAMESPACE
 
-from workhold.drawing.scene import CAP_HEIGHT, Box, text_width
+from workhold.drawing.scene import CAP_HEIGHT, Box, measure_text
 
 # Two boxes of words that share no more than this, in page units, both ways, touch at most.
 TOUCHING = 0.5
@@ -22,7 +22,7 @@ def words_of(svg: str) -> list[tuple[str, Box]]:
             continue
         content = element.text or ""
         size, x, y = (float(element.attrib[key]) for key in ("font-size", "x", "y"))
-        width = text_width(content, size, element.get("font-weight") == "bold")
+        width = measure_text(content, size, element.get("font-weight") == "bold")
         x -= {"start": 0.0, "middle": 0.5, "end": 1.0}[element.get("text-anchor", "start")] * width
         found.append((content, Box(x, y - CAP_HEIGHT * size, x + width, y)))
     return found

@@ -10,8 +10,8 @@ from sheet_reading import collisions, page_of, words_of
 
 from body_examples import BLOCK, TOOLKITS
 from workhold import Load, Result, Workpiece, design
-from workhold.drawing import result_sheet
-from workhold.drawing.pdf import svg_to_pdf
+from workhold.drawing import draw_setup_sheet
+from workhold.drawing.pdf import convert_svg_to_pdf
 from workhold.drawing.scene import UNITS_PER_MM
 from workhold.model.solid import SolidOutline
 from workhold.model.support_request import SupportRequest
@@ -73,12 +73,12 @@ def chosen(name: str, loaded: bool = False) -> ChosenSupports | None:
 
 def sheet(result: Result, **asked: object) -> tuple[str, ...]:
     """The pages of the sheet of the best fixture."""
-    return result_sheet(result, 1, day=DAY, **asked)
+    return draw_setup_sheet(result, 1, day=DAY, **asked)
 
 
 def printed(pages: tuple[str, ...]) -> str:
     """All words of the sheet as a PDF has them."""
-    document = pypdfium2.PdfDocument(svg_to_pdf(pages, DAY))
+    document = pypdfium2.PdfDocument(convert_svg_to_pdf(pages, DAY))
     return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
 
 

@@ -14,16 +14,16 @@ from attrs import evolve, frozen
 from svg_reading import texts
 
 from workhold import Fixture, Peg, Pose, Workpiece
-from workhold.cli.tables import fixture_tables
+from workhold.cli.tables import tabulate_fixture_setup
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
-from workhold.drawing.panel import arrangement_words
-from workhold.files.dxf.writer import setup_dxf
-from workhold.files.result.fixture_text import fixture_template, pin_list
+from workhold.drawing.panel import describe_arrangement
+from workhold.files.dxf.writer import make_setup_dxf
+from workhold.files.result.fixture_text import make_fixture_template, write_pin_list
 from workhold.fixels.setup_words import Datum, SetupWords
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
 from workhold.model.shown import shown
 from workhold.units import MILLIMETRE
-from workhold.web.answers import fixture_answer
+from workhold.web.answers import describe_fixture
 
 
 @frozen
@@ -51,7 +51,7 @@ class FlatJaw(Toolkit):
     def datum(self) -> Datum:
         """Where column A meets the fixed jaw."""
         wall, plate = self.carriers
-        return Datum.at_wall(wall, plate)
+        return Datum.from_wall(wall, plate)
 
 
 OUT, TOOLKIT = 3 / sqrt(2), FlatJaw()
@@ -112,15 +112,15 @@ def test_its_picture_shows_wall_opening_and_pegs() -> None:
     assert {"sliding jaw", "fixed jaw left", "A1", "C1"} <= set(words)
     assert any(word.startswith("S = 32.1") for word in words)
     assert picture.count('class="peg"') == 2 and picture.count('class="fence"') >= 1
-    assert arrangement_words(TOOLKIT.arrangements[0], TOOLKIT) == "Type flat: two pegs on the jaw"
+    assert describe_arrangement(TOOLKIT.arrangements[0], TOOLKIT) == "Type flat: two pegs on the jaw"
 
 
 def test_its_drawing_for_cam_has_layers_of_its_own() -> None:
-    document = ezdxf.read(StringIO(setup_dxf(HELD, HOUSE, TOOLKIT).decode()))
+    document = ezdxf.read(StringIO(make_setup_dxf(HELD, HOUSE, TOOLKIT).decode()))
     layers = {entity.dxf.layer for entity in document.modelspace()}
     assert {"PART", "PEGS", "OPENING", "FIXED JAW", "JAW"} <= layers
     assert [
-        row.split(",")[0] for row in pin_list(HELD, TOOLKIT, MILLIMETRE, None, None).splitlines()[1:]
+        row.split(",")[0] for row in write_pin_list(HELD, TOOLKIT, MILLIMETRE, None, None).splitlines()[1:]
     ] == [
         "A1",
         "C1",
@@ -129,7 +129,7 @@ def test_its_drawing_for_cam_has_layers_of_its_own() -> None:
 
 def test_its_result_file_has_wall_and_jaw() -> None:
     """The shape of FLAT_JAW: the wall's ends by themselves, pegs with the role of the jaw, and the opening."""
-    template = fixture_template(TOOLKIT.arrangements[0], TOOLKIT, [], "")
+    template = make_fixture_template(TOOLKIT.arrangements[0], TOOLKIT, [], "")
     numbers = [float(k) for k in range(template.count("%") - template.count("%%"))]
     entry = json.loads(template % tuple(numbers))
     assert set(entry) == {"type", "wall", "pegs", "pose", "jaw_separation", "quality"}
@@ -138,10 +138,10 @@ def test_its_result_file_has_wall_and_jaw() -> None:
 
 
 def test_the_page_and_the_terminal_tell_it() -> None:
-    answer = fixture_answer(HELD, HOUSE, TOOLKIT)
+    answer = describe_fixture(HELD, HOUSE, TOOLKIT)
     assert (answer["flush"], answer["origin"]) == ([0, 1], "column A at the fixed jaw")
     assert answer["normals"][0] == [0.0, -1.0]
-    told = fixture_tables(HELD, TOOLKIT, 1, 1)
+    told = tabulate_fixture_setup(HELD, TOOLKIT, 1, 1)
     assert told[1] == "Opening S 32.121 mm"
     assert str(told[2]).endswith("from column A at the fixed jaw")
 

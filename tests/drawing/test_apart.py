@@ -8,7 +8,7 @@ from random import Random
 import numpy as np
 import pytest
 
-from workhold.drawing.side_drawing import moved_apart
+from workhold.drawing.side_drawing import move_apart
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -18,7 +18,7 @@ def test_names_stand_apart_in_their_order(seed: int) -> None:
     count = chance.randrange(1, 12)
     wanted = [round(chance.uniform(0, 300), chance.choice((0, -2))) for _ in range(count)]
     sizes = [chance.uniform(5, 40) for _ in range(count)]
-    placed = moved_apart(wanted, sizes, 3.0, -50.0, 900.0)
+    placed = move_apart(wanted, sizes, 3.0, -50.0, 900.0)
     order = sorted(range(count), key=lambda k: (wanted[k], k))
     for one, other in pairwise(order):
         assert placed[other] - placed[one] >= (sizes[one] + sizes[other]) / 2 + 3.0 - 1e-9
@@ -31,7 +31,7 @@ def test_moves_are_the_least(seed: int) -> None:
     """No small change of all places at once that keeps names apart makes the sum of squares less."""
     chance = Random(seed)
     wanted = sorted(chance.uniform(0, 100) for _ in range(5))
-    placed = np.array(moved_apart(wanted, [12.0] * 5, 2.0, -500.0, 500.0))
+    placed = np.array(move_apart(wanted, [12.0] * 5, 2.0, -500.0, 500.0))
     assert (np.diff(placed) >= 14.0 - 1e-9).all()
     best = ((placed - wanted) ** 2).sum()
     for _ in range(400):
@@ -42,10 +42,10 @@ def test_moves_are_the_least(seed: int) -> None:
 
 def test_a_run_stands_about_the_middle_of_its_wishes() -> None:
     """Four names that touch stand where the mean of their moves is nothing: 12.75 before the first wish."""
-    assert moved_apart([0.0, 0.0, 0.0, 9.0], [10.0] * 4, 0.0, -99.0, 99.0) == [-12.75, -2.75, 7.25, 17.25]
+    assert move_apart([0.0, 0.0, 0.0, 9.0], [10.0] * 4, 0.0, -99.0, 99.0) == [-12.75, -2.75, 7.25, 17.25]
 
 
 def test_no_names_have_no_places() -> None:
     """Nothing is moved where there is nothing; more than the line holds begin at its low end."""
-    assert moved_apart([], [], 1.0, 0.0, 10.0) == []
-    assert moved_apart([5.0, 5.0], [20.0, 20.0], 1.0, 0.0, 30.0) == [10.0, 31.0]
+    assert move_apart([], [], 1.0, 0.0, 10.0) == []
+    assert move_apart([5.0, 5.0], [20.0, 20.0], 1.0, 0.0, 30.0) == [10.0, 31.0]

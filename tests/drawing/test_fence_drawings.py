@@ -14,13 +14,13 @@ from svg_reading import texts
 
 from workhold import Fence, Restrictions, Result, Workpiece, design
 from workhold.cli.seat_command import seat_table
-from workhold.drawing import draw_fixture, result_sheet
-from workhold.drawing.bench import contact_of
+from workhold.drawing import draw_fixture, draw_setup_sheet
+from workhold.drawing.bench import find_contact
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
 from workhold.drawing.seats import draw_seats
-from workhold.files.dxf.writer import setup_dxf
-from workhold.files.result.fixture_text import pin_list, result_csv_text
+from workhold.files.dxf.writer import make_setup_dxf
+from workhold.files.result.fixture_text import write_pin_list, write_result_csv
 from workhold.fixels.contacts import ROUND_PIN, WALL_END
 from workhold.geometry.segment import Line
 from workhold.model.seating import Seat
@@ -52,9 +52,9 @@ def test_pictures_and_sheets_show_the_fence_and_cover_nothing(direction: str, tr
     # Once in the plan, once among the signs.
     assert len(re.findall('class="fence"', picture)) == 2 and 'class="hatching"' in picture
     assert len(re.findall('class="peg"', picture)) == 2
-    for page in result_sheet(result, 1):
+    for page in draw_setup_sheet(result, 1):
         assert collisions(page) == []
-    words = " ".join(word for page in result_sheet(result, 1) for word in texts(page))
+    words = " ".join(word for page in draw_setup_sheet(result, 1) for word in texts(page))
     assert "fence left" in words and "x from column A" in words and "y from the fence" in words
     assert "5.000 mm from the fence" in words and "jaw" not in words
 
@@ -66,7 +66,7 @@ def test_corners_on_the_fence_are_told_by_both_faces_and_not_marked_as_touched()
     assert [peg.touched for peg in fixture.pegs[1:3]] == ["1/2", "3/4"]
     picture = draw_fixture(fixture, result.workpiece, result.toolkit)
     assert len(re.findall('class="touched"', picture)) == len({fixture.pegs[0].face, fixture.pegs[3].face})
-    words = " ".join(word for page in result_sheet(result, 1) for word in texts(page))
+    words = " ".join(word for page in draw_setup_sheet(result, 1) for word in texts(page))
     assert "the corner of faces 1 and 2" in words.replace("- ", "")
 
 
@@ -85,7 +85,7 @@ def test_the_bar_lies_below_the_part_and_the_plate_goes_on_below_it() -> None:
 def test_dxf_has_the_bar_on_a_layer_and_one_locator() -> None:
     """The wall's ends are no pegs."""
     result = held(KITE, travel=(4, 30))
-    drawing = ezdxf.read(StringIO(setup_dxf(result[0], result.workpiece, result.toolkit).decode()))
+    drawing = ezdxf.read(StringIO(make_setup_dxf(result[0], result.workpiece, result.toolkit).decode()))
     (bar,) = drawing.modelspace().query('*[layer=="FENCE"]')
     assert max(y for _, y, *_ in bar.get_points()) == 0.0
     assert len(drawing.modelspace().query('CIRCLE[layer=="LOCATORS"]')) == 1
@@ -94,8 +94,8 @@ def test_dxf_has_the_bar_on_a_layer_and_one_locator() -> None:
 def test_the_list_of_pins_has_the_locator_alone_and_a_spreadsheet_all_contacts() -> None:
     """A fence is no pin."""
     result = held(KITE)
-    assert len(pin_list(result[0], result.toolkit, MILLIMETRE, None, None).splitlines()) == 2
-    header, first, *_ = "".join(result_csv_text(result)).splitlines()
+    assert len(write_pin_list(result[0], result.toolkit, MILLIMETRE, None, None).splitlines()) == 2
+    header, first, *_ = "".join(write_result_csv(result)).splitlines()
     row = dict(zip(header.split(","), first.split(","), strict=True))
     assert (row["peg2_jaw"], row["peg2_hole"], float(row["peg2_y"])) == ("wall", "fence", 0.0)
     assert float(row["peg2_x"]) == pytest.approx(result[0].pegs[1].x, abs=1e-8)
@@ -111,7 +111,7 @@ def test_angles_choose_what_lies_on_the_fence() -> None:
 
 def test_the_sheet_says_what_is_measured_and_how_far_the_set_up_may_be_moved() -> None:
     """Rows are fixed by the fence, so it may be moved along it only; two clamps have a tip each."""
-    words = " ".join(word for page in result_sheet(held(KITE), 1) for word in texts(page))
+    words = " ".join(word for page in draw_setup_sheet(held(KITE), 1) for word in texts(page))
     assert "centre of the locator or of the clamp's tip, from column A at the fence" in words.replace(
         "\n", " "
     )
@@ -122,15 +122,15 @@ def test_the_sheet_says_what_is_measured_and_how_far_the_set_up_may_be_moved() -
     assert "further up" not in words
     part = Workpiece.from_loops("block", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]])
     two = design(part, Fence(20, 3, wall_offset=10, clamps=2, columns=4, rows=3))
-    told = " ".join(word for page in result_sheet(two, 1) for word in texts(page))
+    told = " ".join(word for page in draw_setup_sheet(two, 1) for word in texts(page))
     assert "of a clamp's tip" in told
 
 
 def test_a_wall_is_touched_at_its_ends_and_a_pin_where_its_face_is() -> None:
     """The wall pushes up, whatever face of the part ends there."""
     face = Line((0.0, 0.0), (40.0, 30.0))
-    assert contact_of(WALL_END, (12.0, 0.0), face) == ((12.0, 0.0), (0.0, -1.0))
-    (x, y), (nx, ny) = contact_of(ROUND_PIN, (20.0, 15.0), face)
+    assert find_contact(WALL_END, (12.0, 0.0), face) == ((12.0, 0.0), (0.0, -1.0))
+    (x, y), (nx, ny) = find_contact(ROUND_PIN, (20.0, 15.0), face)
     assert (x, y) == pytest.approx((20.0, 15.0)) and (nx, ny) == pytest.approx((0.6, -0.8))
 
 
@@ -142,7 +142,7 @@ def test_a_seat_like_a_fixture_is_said_to_lie_flush() -> None:
     own = evolve(seat, jaw_separation=fixture.travel, difference=0.0, is_own=True)
     picture = texts(draw_seats([own, seat], fixture, result.workpiece, result.toolkit))
     assert picture.count("flush") == 2 and "four pegs" not in picture
-    lengths = LengthUnit.suiting(MILLIMETRE, 10.0)
+    lengths = LengthUnit.from_typical_length(MILLIMETRE, 10.0)
     gauge = SeatingSentences(None, fixture, result.toolkit, lengths).gauge  # type: ignore[arg-type]
     table = seat_table([own, seat], gauge, MILLIMETRE)
     assert [row[-1] for row in table.rows] == ["right", "flush on the fence"]

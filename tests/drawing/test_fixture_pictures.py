@@ -12,7 +12,7 @@ from svg_reading import area, by_class, matrix, texts, to_model
 
 from workhold import Fixture, Pose, Vise, Workpiece
 from workhold.drawing import draw_fixture, draw_thumbnails
-from workhold.drawing.scene import text_width
+from workhold.drawing.scene import measure_text
 from workhold.errors import InputError
 
 Held = tuple[Fixture, Workpiece, Vise]
@@ -76,7 +76,7 @@ def test_page_is_all_that_is_used(held: Held) -> None:
     width, height = map(float, root.attrib["viewBox"].split()[2:])
     for element in root.iter("{http://www.w3.org/2000/svg}text"):
         size, x, y = (float(element.attrib[key]) for key in ("font-size", "x", "y"))
-        long = text_width(element.text or "", size, element.get("font-weight") == "bold")
+        long = measure_text(element.text or "", size, element.get("font-weight") == "bold")
         start = x - {"start": 0.0, "middle": 0.5, "end": 1.0}[element.get("text-anchor", "start")] * long
         assert start >= 0 and start + long <= width
         assert size <= y <= height

@@ -18,9 +18,9 @@ from typer.testing import CliRunner
 from workhold import Plate, Result, Vise, Workpiece, design, save
 from workhold.cli.main import app
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet
-from workhold.files.dxf.writer import setup_dxf
-from workhold.files.result.fixture_text import pin_list
-from workhold.fixels.pegs import Flat, peg_outline
+from workhold.files.dxf.writer import make_setup_dxf
+from workhold.files.result.fixture_text import write_pin_list
+from workhold.fixels.pegs import Flat, make_peg_outline
 from workhold.geometry.segment import Line
 from workhold.units import MILLIMETRE
 
@@ -44,7 +44,7 @@ def mixed() -> int:
 
 def test_an_outline_is_a_circle_cut_off() -> None:
     """A chord so far from the centre, looking that way, and the rest of the circle."""
-    arc, chord = peg_outline((10.0, 5.0), 3.0, Flat(1.5), 90.0)
+    arc, chord = make_peg_outline((10.0, 5.0), 3.0, Flat(1.5), 90.0)
     assert isinstance(chord, Line) and chord.start[1] == pytest.approx(6.5) == chord.end[1]
     assert chord.end[0] == pytest.approx(10 - np.sqrt(9 - 2.25)) and chord.start[0] > 12
     assert np.allclose(arc.at(arc.half_extent), chord.start) and np.allclose(
@@ -52,8 +52,8 @@ def test_an_outline_is_a_circle_cut_off() -> None:
     )
     assert np.allclose(arc.at(0.0), (10, 2))
     assert (
-        len(peg_outline((0.0, 0.0), 3.0, Flat(1.5), None))
-        == len(peg_outline((0.0, 0.0), 3.0, Flat(3.0), 0.0))
+        len(make_peg_outline((0.0, 0.0), 3.0, Flat(1.5), None))
+        == len(make_peg_outline((0.0, 0.0), 3.0, Flat(3.0), 0.0))
         == 1
     )
 
@@ -81,7 +81,7 @@ def test_files_have_them() -> None:
     """In the set-up as DXF each flat is a straight piece on its face, and the list of pins has its angle."""
     result, number = held(VISE), mixed()
     fixture = result[number]
-    space = ezdxf.read(StringIO(setup_dxf(fixture, NOTCHED, VISE).decode())).modelspace()
+    space = ezdxf.read(StringIO(make_setup_dxf(fixture, NOTCHED, VISE).decode())).modelspace()
     drawn = [entity for entity in space if entity.dxf.layer.startswith("PEGS")]
     flat = [peg for peg in fixture.pegs if peg.flat_deg is not None]
     polylines = [entity for entity in drawn if entity.dxftype() == "LWPOLYLINE"]
@@ -92,7 +92,7 @@ def test_files_have_them() -> None:
         start = np.array(fixture.pose.apply(*faces[peg.face].start))
         ends = [np.array(point[:2]) for point in polyline.get_points("xyb")]
         assert all(abs((end - start) @ normal) < 1e-6 for end in ends)
-    rows = [line.split(",") for line in pin_list(fixture, VISE, MILLIMETRE, None, None).splitlines()]
+    rows = [line.split(",") for line in write_pin_list(fixture, VISE, MILLIMETRE, None, None).splitlines()]
     assert rows[0][-1] == "flat_deg"
     assert [row[-1] for row in rows[1:]] == [
         "" if peg.flat_deg is None else f"{peg.flat_deg:.4f}" for peg in fixture.pegs
@@ -104,5 +104,5 @@ def test_a_clamp_has_none() -> None:
     plate = Plate((16, 14), 3, flat=2, columns=4, rows=4, travel=(4, 40))
     fixture = held(plate)[0]
     assert fixture.pegs[3].flat_deg is None and any(peg.flat_deg is not None for peg in fixture.pegs[:3])
-    rows = [line.split(",") for line in pin_list(fixture, plate, MILLIMETRE, None, None).splitlines()]
+    rows = [line.split(",") for line in write_pin_list(fixture, plate, MILLIMETRE, None, None).splitlines()]
     assert len(rows) == 4 and rows[0][-1] == "flat_deg"

@@ -11,7 +11,7 @@ import pytest
 
 import workhold
 from workhold.drawing import scene
-from workhold.drawing.scene import fitting, shortened, text_width, wrapped
+from workhold.drawing.scene import count_fitting_letters, measure_text, shorten_text, wrap_text
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
 
@@ -24,7 +24,7 @@ LETTERS = "abcWi .-Ø樂\u202e\x07\u0301🔩"
 def cut_letter_by_letter(content: str, size: float, width: float, behind: str) -> int:
     """The most letters that fit, tried one after the other."""
     count = 0
-    while count < len(content) and text_width(content[: count + 1] + behind, size) <= width:
+    while count < len(content) and measure_text(content[: count + 1] + behind, size) <= width:
         count += 1
     return count
 
@@ -37,9 +37,9 @@ def test_as_much_is_kept_as_fits(behind: str) -> None:
         text = "".join(chance.choices(LETTERS, k=chance.randrange(1, 60)))
         width = chance.uniform(0, 300)
         expected = cut_letter_by_letter(text, 10.0, width, behind)
-        assert fitting(text, 10.0, width, False, behind) == expected
-        if behind and text_width(text, 10.0) > width:
-            assert shortened(text, 10.0, width) == text[:expected].rstrip() + "…"
+        assert count_fitting_letters(text, 10.0, width, False, behind) == expected
+        if behind and measure_text(text, 10.0) > width:
+            assert shorten_text(text, 10.0, width) == text[:expected].rstrip() + "…"
 
 
 def test_a_word_is_broken_where_it_no_longer_fits() -> None:
@@ -48,14 +48,14 @@ def test_a_word_is_broken_where_it_no_longer_fits() -> None:
     for _ in range(100):
         word = "".join(chance.choices("abcWiØ樂", k=chance.randrange(2, 80)))
         width = chance.uniform(0, 120)
-        lines = wrapped(word, 10.0, width)
+        lines = wrap_text(word, 10.0, width)
         assert "".join(lines) == word
         for line, after in pairwise(lines):
-            assert len(line) == 1 or text_width(line, 10.0) <= width
-            assert text_width(line + after[0], 10.0) > width or after == lines[-1][:1] == after
+            assert len(line) == 1 or measure_text(line, 10.0) <= width
+            assert measure_text(line + after[0], 10.0) > width or after == lines[-1][:1] == after
 
 
-@pytest.mark.parametrize("cut", [wrapped, shortened])
+@pytest.mark.parametrize("cut", [wrap_text, shorten_text])
 def test_long_words_are_measured_about_as_often_as_they_have_lines(
     cut: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -64,9 +64,9 @@ def test_long_words_are_measured_about_as_often_as_they_have_lines(
 
     def counted(content: str, size: float, bold: bool = False) -> float:
         looked[0] += min(len(content), 200)
-        return text_width(content, size, bold)
+        return measure_text(content, size, bold)
 
-    monkeypatch.setattr(scene, "text_width", counted)
+    monkeypatch.setattr(scene, "measure_text", counted)
     counts = []
     for length in (1_000, 10_000):
         looked[0] = 0

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 from workhold import Fence, Plate, Program, Query, Result, Vise, answer, load
-from workhold.drawing import draw_fixture, result_sheet
-from workhold.drawing.path_drawn import PagePaths, PlannedPath, planned_path
-from workhold.drawing.pdf import svg_to_pdf
+from workhold.drawing import draw_fixture, draw_setup_sheet
+from workhold.drawing.path_drawn import PagePaths, PlannedPath, make_planned_path
+from workhold.drawing.pdf import convert_svg_to_pdf
 from workhold.drawing.scene import Box, View
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.moves import Moves
@@ -63,7 +63,7 @@ def ends_of(d: str) -> np.ndarray:
 @pytest.mark.thorough
 def test_path_lies_where_the_pose_puts_the_part(result: Result) -> None:
     """The slot's ends on the page, taken back by the pose, are those that the program names."""
-    path = planned_path(result, 0)
+    path = make_planned_path(result, 0)
     assert path is not None
     svg = draw_fixture(result[0], result.workpiece, result.toolkit, path=path)
     scale, left, top = map_of(svg)
@@ -77,7 +77,7 @@ def test_path_lies_where_the_pose_puts_the_part(result: Result) -> None:
 @pytest.mark.thorough
 def test_nearest_move_is_marked_at_its_distance(result: Result) -> None:
     """The marked place is off what it passes by the clearance, the tool's radius and the peg's."""
-    path, near = planned_path(result, 0), find_nearest_passing(result, 0)
+    path, near = make_planned_path(result, 0), find_nearest_passing(result, 0)
     assert path is not None and near is not None
     svg = draw_fixture(result[0], result.workpiece, result.toolkit, path=path)
     (mark,) = by_class(svg, "nearest-place")
@@ -96,14 +96,14 @@ def test_nearest_move_is_marked_at_its_distance(result: Result) -> None:
 @pytest.mark.thorough
 def test_sheet_names_the_program_with_its_tools_and_zero(result: Result) -> None:
     """The sheet's part zero is the program's, and every tool stands on it with its lines."""
-    pages = result_sheet(result, 1)
+    pages = draw_setup_sheet(result, 1)
     words = [one.text for page in pages for one in ET.fromstring(page).iter() if one.tag.endswith("text")]
     for said in ("bracket.nc", "T1", "13 to 30", "37 to 41", "49 to 70", "origin of the drawing"):
         assert said in words
     assert by_class(pages[0], "rapid") and by_class(pages[0], "cut-1") and by_class(pages[0], "nearest")
-    assert svg_to_pdf(pages, date(2026, 3, 1)).startswith(b"%PDF")
+    assert convert_svg_to_pdf(pages, date(2026, 3, 1)).startswith(b"%PDF")
     assert not any("this sheet's" in (word or "") for word in words)
-    other = result_sheet(result, 1, zero="centre")
+    other = draw_setup_sheet(result, 1, zero="centre")
     words = [one.text for page in other for one in ET.fromstring(page).iter() if one.tag.endswith("text")]
     assert any("X0 Y0 is at x 0.000, y" in (word or "") for word in words)
 
@@ -124,31 +124,35 @@ def test_paths_end_at_the_box() -> None:
         ((1, 5), (1, 9), -1.0),
         ((5, -3), (5, 15), 0.0),
     )
-    paths = PagePaths.of(given, View(1.0, 0.0, 10.0), box=Box(0, 0, 10, 10))
+    paths = PagePaths.from_moves(given, View(1.0, 0.0, 10.0), box=Box(0, 0, 10, 10))
     assert paths.shown.tolist() == [True, False, True, False, True]
     assert paths.start[0].tolist() == [0, 5] and paths.end[0].tolist() == [10, 5]
     assert paths.start[4].tolist() == [5, 10] and paths.end[4].tolist() == [5, 0]
-    assert paths.data(np.arange(5)) == "M0 5L10 5M5 5A2 2 0 0 0 7 3A2 2 0 0 0 5 1M5 10L5 0"
+    assert paths.make_path_data(np.arange(5)) == "M0 5L10 5M5 5A2 2 0 0 0 7 3A2 2 0 0 0 5 1M5 10L5 0"
 
 
 def test_short_moves_are_drawn_together_and_keep_their_end() -> None:
     """A run of moves of a hundredth of a unit becomes a few lines that end where it ends."""
     xs = np.linspace(0, 1.203, 121)
     given = moves(*(((a, 0.0), (b, 0.0), 0.0) for a, b in pairwise(xs.tolist())))
-    d = PagePaths.of(given, View(1.0, 0.0, 0.0)).data(np.arange(120))
+    d = PagePaths.from_moves(given, View(1.0, 0.0, 0.0)).make_path_data(np.arange(120))
     assert d.count("L") == 4 and d.endswith("L1.203 0") and d.count("M") == 1
     apart = moves(((0, 0), (0.1, 0), 0.0), ((5, 0), (5.1, 0), 0.0), ((5.1, 0), (5.3, 0.2), 0.4))
-    assert PagePaths.of(apart, View(1.0, 0.0, 0.0)).data(np.arange(3)).startswith("M0 0L0.1 0M5 0L5.1 0A")
+    assert (
+        PagePaths.from_moves(apart, View(1.0, 0.0, 0.0))
+        .make_path_data(np.arange(3))
+        .startswith("M0 0L0.1 0M5 0L5.1 0A")
+    )
 
 
 def test_plan_grows_for_what_is_cut_beside_the_part_but_not_for_a_far_journey(result: Result) -> None:
     """The extent holds the border's path; a cut a metre away does not shrink the plan."""
-    path = planned_path(result, 0)
+    path = make_planned_path(result, 0)
     assert path is not None
     extent = Box(0, 0, 130, 130)
-    assert path.grown(extent).width > 130 or path.grown(extent).height > 130
+    assert path.enlarge_extent(extent).width > 130 or path.enlarge_extent(extent).height > 130
     far = moves(((0, 0), (1000, 0), 0.0))
     from attrs import evolve
 
     off = evolve(path.program, moves=evolve(far, tool=[2]))
-    assert PlannedPath(off, path.fixture, None).grown(extent) == extent
+    assert PlannedPath(off, path.fixture, None).enlarge_extent(extent) == extent

@@ -10,8 +10,8 @@ import pytest
 from drawing_examples import diamond, example
 
 from workhold.drawing import SheetDetails, draw_features, draw_fixture, draw_sheet, draw_thumbnails
-from workhold.drawing.pdf import svg_to_pdf, trace_arc
-from workhold.drawing.scene import BLACK, Box, Scene, View, text_width
+from workhold.drawing.pdf import convert_svg_to_pdf, trace_arc
+from workhold.drawing.scene import BLACK, Box, Scene, View, measure_text
 
 DAY = date(2026, 3, 31)
 DETAILS = SheetDetails(number=1, count=2, day=DAY, result_hash="ab" * 32, version="1.2.3")
@@ -21,7 +21,7 @@ PIXELS = 2.0
 
 def pixels(scene: Scene) -> list[list[int]]:
     """The grey values of a printed page, two pixels for each page unit."""
-    document = pypdfium2.PdfDocument(svg_to_pdf([scene.svg()], DAY))
+    document = pypdfium2.PdfDocument(convert_svg_to_pdf([scene.to_svg()], DAY))
     picture = document[0].render(scale=PIXELS / (72 / 101.6), grayscale=True).to_numpy()
     return [[int(value) for value in row] for row in picture.reshape(picture.shape[0], -1)]
 
@@ -35,13 +35,13 @@ def dark_box(scene: Scene) -> tuple[float, float, float, float]:
 
 def empty() -> Scene:
     """A white page of 100 by 60 page units."""
-    return Scene.page((100.0, 60.0), "test")
+    return Scene.make_page((100.0, 60.0), "test")
 
 
 def test_sheet_holds_its_words_as_text() -> None:
     """Every page can be searched for what stands on it, and the document has its title."""
     pages = draw_sheet(*diamond(), DETAILS)
-    document = pypdfium2.PdfDocument(svg_to_pdf(pages, DAY))
+    document = pypdfium2.PdfDocument(convert_svg_to_pdf(pages, DAY))
     assert len(document) == len(pages)
     words = "".join(page.get_textpage().get_text_bounded() for page in document)
     for wanted in ("L-A1", "R-A3", "diamond", "2026-03-31", "θ", "workhold 1.2.3"):
@@ -55,14 +55,14 @@ def test_sheet_holds_its_words_as_text() -> None:
 def test_page_has_the_size_of_the_paper(paper: str) -> None:
     """A4 is 595.3 by 841.9 points, Letter 612 by 792."""
     details = SheetDetails(number=1, count=1, day=DAY, result_hash="0" * 64, version="1", paper=paper)
-    document = pypdfium2.PdfDocument(svg_to_pdf(draw_sheet(*diamond(), details), DAY))
+    document = pypdfium2.PdfDocument(convert_svg_to_pdf(draw_sheet(*diamond(), details), DAY))
     expected = {"a4": (595.276, 841.890), "letter": (612.0, 792.0)}[paper]
     assert sorted(document[0].get_size()) == pytest.approx(sorted(expected), abs=0.02)
 
 
 def test_typefaces_are_embedded() -> None:
     """Every font has its program in the file, so that it looks the same everywhere."""
-    content = svg_to_pdf(draw_sheet(*diamond(), DETAILS), DAY)
+    content = convert_svg_to_pdf(draw_sheet(*diamond(), DETAILS), DAY)
     assert content.count(b"/FontFile2") == 2 and b"/Helvetica" not in content
 
 
@@ -70,8 +70,8 @@ def test_typefaces_are_embedded() -> None:
 def test_bytes_depend_on_picture_and_day_only() -> None:
     """Twice the same; another day gives another file."""
     pages = draw_sheet(*example(), DETAILS)
-    assert svg_to_pdf(pages, DAY) == svg_to_pdf(pages, DAY)
-    assert svg_to_pdf(pages, DAY) != svg_to_pdf(pages, date(2026, 4, 1))
+    assert convert_svg_to_pdf(pages, DAY) == convert_svg_to_pdf(pages, DAY)
+    assert convert_svg_to_pdf(pages, DAY) != convert_svg_to_pdf(pages, date(2026, 4, 1))
 
 
 @pytest.mark.thorough
@@ -83,19 +83,19 @@ def test_all_pictures_can_be_printed() -> None:
         draw_features(workpiece, peg_radius=3.0),
         draw_thumbnails([fixture], workpiece, vise, ["1"]),
     ):
-        assert len(pypdfium2.PdfDocument(svg_to_pdf([svg], DAY))) == 1
+        assert len(pypdfium2.PdfDocument(convert_svg_to_pdf([svg], DAY))) == 1
 
 
 def test_shapes_stand_where_the_picture_has_them() -> None:
     """A rectangle, a circle and an arc keep their places to half a page unit."""
     scene = empty()
-    scene.rectangle(Box(10, 20, 40, 35), BLACK)
+    scene.add_rectangle(Box(10, 20, 40, 35), BLACK)
     assert dark_box(scene) == pytest.approx((10, 20, 40, 35), abs=0.5)
     scene = empty()
-    scene.circle((60, 30), 12, BLACK)
+    scene.add_circle((60, 30), 12, BLACK)
     assert dark_box(scene) == pytest.approx((48, 18, 72, 42), abs=0.5)
     scene = empty()
-    scene.path("M40 40A20 20 0 0 1 80 40Z", fill=BLACK)  # the upper half of a disc
+    scene.add_path("M40 40A20 20 0 0 1 80 40Z", fill=BLACK)  # the upper half of a disc
     assert dark_box(scene) == pytest.approx((40, 20, 80, 40), abs=0.5)
 
 
@@ -133,25 +133,25 @@ class Curves:
 def test_text_stands_where_the_picture_has_it() -> None:
     """A line of text that ends at 90 does, and is as wide and as high as the layout thinks."""
     scene = empty()
-    scene.text((90, 30), "HHH", 20, "end")
+    scene.add_text((90, 30), "HHH", 20, "end")
     left, upper, right, lower = dark_box(scene)
     assert right == pytest.approx(90 - 0.1 * 20, abs=1.0)  # an H has a tenth of an em on its side
-    assert left == pytest.approx(90 - text_width("HHH", 20) + 0.1 * 20, abs=1.0)
+    assert left == pytest.approx(90 - measure_text("HHH", 20) + 0.1 * 20, abs=1.0)
     assert lower - upper == pytest.approx(0.729 * 20, abs=1.0)
 
 
 def test_a_hole_stays_open() -> None:
     """The even-odd rule is kept: the middle of a ring is white."""
     scene = empty()
-    scene.path("M10 10L50 10L50 50L10 50ZM20 20L40 20L40 40L20 40Z", fill=BLACK, fill_rule="evenodd")
+    scene.add_path("M10 10L50 10L50 50L10 50ZM20 20L40 20L40 40L20 40Z", fill=BLACK, fill_rule="evenodd")
     assert pixels(scene)[int(30 * PIXELS)][int(30 * PIXELS)] > 250
 
 
 def test_unknown_letters_are_printed_as_question_marks() -> None:
     """A letter that the typeface lacks leaves a sign and no error."""
     scene = empty()
-    scene.text((10, 30), "a部b", 10)
-    document = pypdfium2.PdfDocument(svg_to_pdf([scene.svg()], DAY))
+    scene.add_text((10, 30), "a部b", 10)
+    document = pypdfium2.PdfDocument(convert_svg_to_pdf([scene.to_svg()], DAY))
     assert document[0].get_textpage().get_text_bounded() == "a?b"
 
 
@@ -161,15 +161,15 @@ def test_what_would_be_lost_is_refused(what: str) -> None:
     scene = empty()
     scene.add(what, {})
     with pytest.raises(ValueError, match=what):
-        svg_to_pdf([scene.svg()], DAY)
+        convert_svg_to_pdf([scene.to_svg()], DAY)
     scene = empty()
-    scene.rectangle(Box(0, 0, 1, 1), BLACK).set("filter", "blur")
+    scene.add_rectangle(Box(0, 0, 1, 1), BLACK).set("filter", "blur")
     with pytest.raises(ValueError, match="filter"):
-        svg_to_pdf([scene.svg()], DAY)
+        convert_svg_to_pdf([scene.to_svg()], DAY)
 
 
 def test_groups_keep_their_views() -> None:
     """The map to millimetres is no style and is passed over."""
     scene = empty()
-    scene.group("part", View(1.0, 0.0, 0.0)).circle((50, 30), 5, BLACK)
+    scene.group("part", View(1.0, 0.0, 0.0)).add_circle((50, 30), 5, BLACK)
     assert dark_box(scene) == pytest.approx((45, 25, 55, 35), abs=0.5)

@@ -12,7 +12,7 @@ from svg_reading import by_class
 
 from workhold import Pose, Workpiece
 from workhold.drawing import draw_fixture
-from workhold.drawing.plan import angle_mark
+from workhold.drawing.plan import draw_angle_mark
 from workhold.drawing.scene import Scene
 
 
@@ -20,9 +20,9 @@ from workhold.drawing.scene import Scene
 def test_the_arc_of_an_angle_ends_at_its_arrow_head(theta: float) -> None:
     """It begins on the vise's axis and ends short of the part's by no more than the head is long: turned counter-clockwise
     by the angle and not past it, clockwise where the angle is negative."""
-    page, radius = Scene.page((200.0, 200.0), "angle"), 40.0
-    angle_mark(page, (100.0, 100.0), theta, radius, 60.0)
-    (group,) = by_class(page.svg(), "pose")
+    page, radius = Scene.make_page((200.0, 200.0), "angle"), 40.0
+    draw_angle_mark(page, (100.0, 100.0), theta, radius, 60.0)
+    (group,) = by_class(page.to_svg(), "pose")
     d = next(element.attrib["d"] for element in group if "A" in element.attrib.get("d", ""))
     ends = [(float(x), float(y)) for x, y in re.findall(r"([-\d.]+) ([-\d.]+)(?=A|$)", d)]
     way = 1.0 if theta > 0.0 else -1.0

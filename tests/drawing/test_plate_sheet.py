@@ -13,7 +13,7 @@ from svg_reading import texts
 from workhold import Fixture, Load, Plate, Workpiece
 from workhold.drawing import SheetDetails, draw_sheet
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.files.result.fixture_text import pin_list
+from workhold.files.result.fixture_text import write_pin_list
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
 
@@ -115,5 +115,5 @@ def test_all_may_be_moved_as_far_as_there_are_holes(way: str, bolted: bool) -> N
 def test_pins_are_the_locators_alone() -> None:
     """The list of pins has a row for each locator, and none for the clamp."""
     fixture, _, plate = on_plate()
-    header, *rows = pin_list(fixture, plate, MILLIMETRE, None, None).splitlines()
+    header, *rows = write_pin_list(fixture, plate, MILLIMETRE, None, None).splitlines()
     assert [row.split(",")[0] for row in rows] == ["A2", "B4", "F1"] and header.startswith("hole,carrier")

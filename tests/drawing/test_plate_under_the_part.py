@@ -12,7 +12,7 @@ from svg_reading import NAMESPACE, by_class, to_model
 
 from workhold import Pose
 from workhold.drawing import draw_fixture
-from workhold.files.dxf.writer import setup_dxf
+from workhold.files.dxf.writer import make_setup_dxf
 from workhold.model.shown import Shown, shown
 
 KINDS = (
@@ -92,7 +92,9 @@ def test_holes_keep_their_names(held: Held) -> None:
         assert any(abs(origin[0] + column * PITCH[0] - x) < 1.0 for origin in origins)
     for row, y in rows:
         assert any(abs(origin[1] + (row - 1) * PITCH[1] - y) < 2.5 for origin in origins)
-    space = ezdxf.read(StringIO(setup_dxf(held.fixture, held.workpiece, held.toolkit).decode())).modelspace()  # type: ignore[attr-defined]
+    space = ezdxf.read(
+        StringIO(make_setup_dxf(held.fixture, held.workpiece, held.toolkit).decode())
+    ).modelspace()  # type: ignore[attr-defined]
     texts = [(text.dxf.text, text.dxf.align_point) for text in space if text.dxftype() == "TEXT"]
     centers = [
         circle.dxf.center for circle in space if circle.dxftype() == "CIRCLE" and "HOLES" in circle.dxf.layer

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from workhold import Program, load
-from workhold.drawing import svg_to_png
-from workhold.drawing.path_drawn import COLOURS, shaded
+from workhold.drawing import convert_svg_to_png
+from workhold.drawing.path_drawn import COLOURS, shade_colour
 from workhold.drawing.program_picture import draw_program
 from workhold.units import INCH
 
@@ -78,7 +78,7 @@ def test_bands_are_as_wide_as_the_flutes_and_rapid_moves_are_dashed(program: Pro
 
 def test_lower_is_darker(program: Program) -> None:
     """The contour at -12 is darker than the way down to it, and drawn over it."""
-    shades = [shaded(COLOURS[0], level) for level in range(6)]
+    shades = [shade_colour(COLOURS[0], level) for level in range(6)]
     brightness = [sum(int(one[k : k + 2], 16) for k in (1, 3, 5)) for one in shades]
     assert brightness == sorted(brightness) and len(set(brightness)) == 6
     paths, _ = paths_of(draw_program(program))
@@ -114,7 +114,7 @@ def test_words_and_the_part(program: Program) -> None:
 
 def test_it_can_be_rendered(program: Program) -> None:
     """As PNG."""
-    assert svg_to_png(draw_program(program)).startswith(b"\x89PNG")
+    assert convert_svg_to_png(draw_program(program)).startswith(b"\x89PNG")
 
 
 def test_half_turns_are_drawn_the_right_way(tmp_path: Path) -> None:

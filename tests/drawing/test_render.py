@@ -8,8 +8,8 @@ import zlib
 import pytest
 from drawing_examples import example
 
-from workhold.drawing import draw_features, draw_fixture, render, svg_to_png
-from workhold.drawing.scene import FOLDER, advance_widths, text_width
+from workhold.drawing import convert_svg_to_png, draw_features, draw_fixture, render
+from workhold.drawing.scene import FOLDER, load_advance_widths, measure_text
 from workhold.errors import InputError
 from workhold.presenting.papers import PNG_WIDTH
 
@@ -28,7 +28,7 @@ def pixels(png: bytes) -> bytes:
 @pytest.mark.parametrize("width", [200, 1000])
 def test_png_has_the_width_asked_for_and_is_not_blank(width: int) -> None:
     """Signature, header, and more than one value among the pixels."""
-    png = svg_to_png(draw_fixture(*example()), width)
+    png = convert_svg_to_png(draw_fixture(*example()), width)
     assert png.startswith(b"\x89PNG\r\n\x1a\n")
     wide, high = struct.unpack(">II", png[16:24])
     assert wide == width and high == pytest.approx(width * 210 / 297, abs=1)
@@ -47,9 +47,9 @@ def test_text_is_drawn_with_the_bundled_font() -> None:
     head = (
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 50" width="200" height="50" font-size="20">'
     )
-    blank = svg_to_png(f"{head}</svg>", 200)
-    plain = svg_to_png(f'{head}<text x="5" y="30" font-family="DejaVu Sans">Øθ°×±µ</text></svg>', 200)
-    bold = svg_to_png(
+    blank = convert_svg_to_png(f"{head}</svg>", 200)
+    plain = convert_svg_to_png(f'{head}<text x="5" y="30" font-family="DejaVu Sans">Øθ°×±µ</text></svg>', 200)
+    bold = convert_svg_to_png(
         f'{head}<text x="5" y="30" font-family="DejaVu Sans" font-weight="bold">Øθ°×±µ</text></svg>', 200
     )
     assert len({blank, plain, bold}) == 3
@@ -60,12 +60,12 @@ def test_endings_choose_the_kind() -> None:
     """.svg is the text itself, .png a picture of it, anything else is refused naming both."""
     svg = draw_features(example()[1])
     assert render(svg, ".svg").decode() == svg
-    assert render(svg, ".PNG") == svg_to_png(svg)
+    assert render(svg, ".PNG") == convert_svg_to_png(svg)
     for ending in (".pdf", ""):
         with pytest.raises(InputError, match=r"\.svg or \.png"):
             render(svg, ending)
     with pytest.raises(InputError):
-        svg_to_png(svg, 0)
+        convert_svg_to_png(svg, 0)
 
 
 def test_widths_are_those_of_the_font() -> None:
@@ -75,8 +75,10 @@ def test_widths_are_those_of_the_font() -> None:
         font = fonts.TTFont(FOLDER / file)
         em, advances = font["head"].unitsPerEm, font["hmtx"]
         for code, glyph in font.getBestCmap().items():
-            assert advance_widths()[weight][chr(code)] == pytest.approx(advances[glyph][0] / em, abs=1e-4)
-    assert text_width("漢", 10) == 10  # not in the font: an em wide
+            assert load_advance_widths()[weight][chr(code)] == pytest.approx(
+                advances[glyph][0] / em, abs=1e-4
+            )
+    assert measure_text("漢", 10) == 10  # not in the font: an em wide
 
 
 def test_licence_lies_beside_the_fonts() -> None:

@@ -12,10 +12,10 @@ from svg_reading import by_class, texts
 
 import workhold
 from workhold import Fence, Load, Plate, Result, Vise, Workpiece
-from workhold.drawing import SheetDetails, draw_sheet, result_sheet
+from workhold.drawing import SheetDetails, draw_setup_sheet, draw_sheet
 from workhold.drawing.scene import UNITS_PER_MM, LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet_facts import result_cautions
+from workhold.drawing.sheet_facts import list_result_cautions
 from workhold.model.clamps import order_words
 from workhold.model.quality import FIGURE_RANKING
 from workhold.model.seating import CLOSE_READING, SMALL_CAPTURE, Seating
@@ -42,7 +42,7 @@ def told(result: Result) -> list[Seating]:
 
 def words_for(result: Result, told: Seating, number: int = 0, unit: Unit = MILLIMETRE) -> SeatingSentences:
     """The words of a fixture."""
-    return SeatingSentences(told, result[number], result.toolkit, LengthUnit.suiting(unit, 20.0))
+    return SeatingSentences(told, result[number], result.toolkit, LengthUnit.from_typical_length(unit, 20.0))
 
 
 def with_seats(told: Seating, wrong: int) -> Seating:
@@ -103,7 +103,7 @@ def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seatin
 def test_bounds_are_never_told_too_wide(result: Result, told: list[Seating], unit: Unit, number: int) -> None:
     """Jaws opened as told are open by less than the capture opening, and a part put in as told lies nearer than placing."""
     one, words = told[number], words_for(result, told[number], number, unit)
-    first, second = words.steps(WEDGE)[:2]
+    first, second = words.list_steps(WEDGE)[:2]
     number_of = [float(word) * unit.millimetres for word in first.split() if word.replace(".", "").isdigit()]
     wide, more, room = number_of
     assert one.capture_opening is not None and one.placing is not None and one.drop_room is not None
@@ -136,27 +136,27 @@ def test_the_nearest_readings_come_first(result: Result, told: list[Seating]) ->
     most = sorted(seat.jaw_separation for seat in told[1].seats if seat.is_wrong)[2] + 1e-6
     assert len(words_for(result, evolve(told[1], most=most), 1).wrong) == 3
     near = words_for(result, evolve(told[1], opening=words.wrong[2].difference + 1e-6), 1)
-    assert len(near.wrong) < len(words.wrong) and "opened by no more than" in near.wrong_words()[0]
+    assert len(near.wrong) < len(words.wrong) and "opened by no more than" in near.describe_wrong_seats()[0]
 
 
 def test_it_is_told_whether_the_reading_tells(result: Result, told: list[Seating]) -> None:
     """The first fixture's wrong seats read like the right one, those of the second do not."""
-    first, second = (words_for(result, told[k], k).wrong_words()[0] for k in (0, 1))
+    first, second = (words_for(result, told[k], k).describe_wrong_seats()[0] for k in (0, 1))
     assert "the reading alone does not show it" in first and second.endswith(": the reading shows it.")
 
 
 def test_friction_is_told_where_dry_steel_sticks(result: Result, told: list[Seating]) -> None:
     for friction, sticks in ((0.19, True), (0.21, False)):
-        steps = words_for(result, evolve(told[0], sticking_friction=friction)).steps(WEDGE)
+        steps = words_for(result, evolve(told[0], sticking_friction=friction)).list_steps(WEDGE)
         assert any("tap it home as you close" in step for step in steps) == sticks
 
 
 def test_what_never_gets_out_may_be_opened_as_far_as_one_likes(result: Result, told: list[Seating]) -> None:
     """And what gets out only where the jaws do not reach, as far as they go."""
-    free = words_for(result, evolve(told[0], capture_opening=None, placing=None)).steps(WEDGE)
+    free = words_for(result, evolve(told[0], capture_opening=None, placing=None)).list_steps(WEDGE)
     assert "as far as you like" in free[0] and not any("Put the part in" in step for step in free)
     most = result[0].travel + 0.5 * (told[0].capture_opening or 0.0)
-    assert "as far as possible" in words_for(result, evolve(told[0], most=most)).steps(WEDGE)[0]
+    assert "as far as possible" in words_for(result, evolve(told[0], most=most)).list_steps(WEDGE)[0]
 
 
 def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Seating]) -> None:
@@ -168,35 +168,37 @@ def test_a_part_that_is_hardly_caught_is_warned_of(result: Result, told: list[Se
         seats = (own, evolve(wrong, difference=off))
         return [
             kind
-            for kind, _ in words_for(result, evolve(told[0], capture_opening=capture, seats=seats)).cautions()
+            for kind, _ in words_for(
+                result, evolve(told[0], capture_opening=capture, seats=seats)
+            ).list_cautions()
         ]
 
     assert kinds(1.01 * SMALL_CAPTURE, -1.01 * CLOSE_READING) == []
     assert kinds(0.99 * SMALL_CAPTURE, 1.01 * CLOSE_READING) == ["capture"]
     assert kinds(1.01 * SMALL_CAPTURE, -0.99 * CLOSE_READING) == ["reading"]
-    (caution,) = words_for(result, told[0]).cautions()
+    (caution,) = words_for(result, told[0]).list_cautions()
     assert caution[0] == "reading" and "no different" in caution[1]
 
 
 @pytest.mark.thorough
 def test_it_is_told_where_it_is_known_or_asked_for(result: Result, told: list[Seating]) -> None:
     """A sheet of a result that has it is the one that is asked for; without, neither page nor sheet tell anything of it."""
-    sheets = {seating: result_sheet(result, 1, seating=seating) for seating in (True, None)}
+    sheets = {seating: draw_setup_sheet(result, 1, seating=seating) for seating in (True, None)}
     asked, plain = (" ".join(word for page in pages for word in texts(page)) for pages in sheets.values())
     kept = evolve(result, seating=tuple(told))
     same = {
-        seating: result_sheet(kept, 1, seating=seating) == sheets[True] for seating in (None, True, False)
+        seating: draw_setup_sheet(kept, 1, seating=seating) == sheets[True] for seating in (None, True, False)
     }
     assert same == {None: True, True: True, False: False}
     assert "Does the part end up there?" in asked and "no different" in asked
     assert "Does the part end up there?" not in plain
-    assert [c.kind for c in result_cautions(result, 1, seating=True)] == ["reading"]
-    assert "reading" not in [c.kind for c in result_cautions(result, 1)]
+    assert [c.kind for c in list_result_cautions(result, 1, seating=True)] == ["reading"]
+    assert "reading" not in [c.kind for c in list_result_cautions(result, 1)]
 
 
 def test_what_cannot_be_told_is_left_out_with_its_sentence() -> None:
     plate = workhold.design(WEDGE, Plate(pitch=20, peg_radius=0.0), best=1)
-    words = " ".join(word for page in result_sheet(plate, 1, seating=True) for word in texts(page))
+    words = " ".join(word for page in draw_setup_sheet(plate, 1, seating=True) for word in texts(page))
     assert "Does the part end up there?" in words and "What it looks like" not in words
     with pytest.raises(workhold.InputError) as refusal:
         workhold.seatings(plate)
@@ -215,15 +217,17 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
     for rank in (2, 3):
         [told] = workhold.seatings(result, [result[rank - 1]])
         for seating in (True, None, False):
-            pages = result_sheet(result, rank, seating=seating)
+            pages = draw_setup_sheet(result, rank, seating=seating)
             words = " ".join(word for page in pages for word in texts(page))
             wanted = seating or (seating is None and rank == 2)
-            steps = told.steps(LengthUnit.suiting(MILLIMETRE, 20.0).words, with_order=False)
+            steps = told.list_steps(
+                LengthUnit.from_typical_length(MILLIMETRE, 20.0).format_length, with_order=False
+            )
             why = "Neither of the two clamps holds the part alone"
             assert all((part in words) == wanted for part in (why, *steps, "Does the part end up there?"))
             assert words.count(order_words(result[rank - 1])) == 2
             assert "What it looks like" not in words and not any(collisions(page) for page in pages)
-    [asked, plain] = [result_cautions(result, 1, seating=seating) for seating in (True, False)]
+    [asked, plain] = [list_result_cautions(result, 1, seating=seating) for seating in (True, False)]
     assert asked == plain
 
 
@@ -235,7 +239,7 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     plate = workhold.design(WEDGE, toolkit, best=1, rank_by=FIGURE_RANKING)
     (told,) = workhold.seatings(plate)
     words = words_for(plate, told)
-    steps = words.steps(WEDGE)
+    steps = words.list_steps(WEDGE)
     right, capture = -plate[0].travel, told.capture_opening or 0.0
     least = float(steps[0].split("stroke = ")[1].split()[0])
     assert steps[0].startswith("Draw the clamp back to stroke = ") and "at least" in steps[0]
@@ -247,7 +251,10 @@ def test_a_clamp_is_drawn_back_and_tightened() -> None:
     # Readings as long as that stand on the sheet uncut.
     pages = draw_sheet(plate[0], WEDGE, plate.toolkit, evolve(DETAILS, seating=told))
     written = [word for page in pages for word in texts(page)]
-    assert words.reads(right) in written and words.reads(words.reading(words.wrong[0])) in written
+    assert (
+        words.format_reading(right) in written
+        and words.format_reading(words.compute_reading(words.wrong[0])) in written
+    )
     assert all(collisions(page) == [] for page in pages)
     lower = next(seat for seat in told.seats if seat.difference > 0.1)
-    assert words.difference(lower).endswith("less")
+    assert words.describe_difference(lower).endswith("less")

@@ -15,11 +15,11 @@ from svg_reading import by_class, scale_bar_of, texts, to_model
 from fakes import fake_result
 from workhold import Fixture, FlatJaw, Load, Peg, Pose, Vise, Workpiece, design
 from workhold.conventions import NEAR_EDGE, STRONG_PEG, WEAK_CLOSURE
-from workhold.drawing import SheetDetails, draw_sheet, result_sheet
-from workhold.drawing.bench import bench_of
+from workhold.drawing import SheetDetails, draw_setup_sheet, draw_sheet
+from workhold.drawing.bench import make_bench
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit
-from workhold.drawing.sheet import filled_runs, standard_scale
-from workhold.drawing.sheet_facts import PAPERS, caliper_check, cautions_of, edge_distances
+from workhold.drawing.sheet import choose_standard_scale, fill_runs
+from workhold.drawing.sheet_facts import PAPERS, choose_caliper_check, list_cautions, measure_edge_distances
 from workhold.fixels.carrier import Holes
 from workhold.statics.loads import load_cases
 from workhold.units import INCH, MILLIMETRE, Unit
@@ -156,16 +156,16 @@ def test_all_a_machinist_needs_is_written(size: float) -> None:
     held = diamond(size)
     fixture, workpiece, _ = held
     words = joined(draw_sheet(*held, details_for(held)))
-    pose, lengths = fixture.pose, LengthUnit.suiting(MILLIMETRE, held[2].pitch[0])
+    pose, lengths = fixture.pose, LengthUnit.from_typical_length(MILLIMETRE, held[2].pitch[0])
     for wanted in [
         workpiece.name,
         "2026-03-31",
         "0123456789ab…",
         "workhold 1.2.3",
         "Fixture 3 of 70",
-        lengths.words(fixture.travel),
-        lengths.words(pose.x),
-        lengths.words(pose.y),
+        lengths.format_length(fixture.travel),
+        lengths.format_length(pose.x),
+        lengths.format_length(pose.y),
         "45.0000°",
         "side milling",
         "load 2",
@@ -184,10 +184,10 @@ def test_a_drawing_far_from_its_origin_has_its_zero_on_the_part(size: float) -> 
     )
     x, y = fixture.pose.apply(-2000.0, 300.0)
     page = draw_sheet(evolve(fixture, pose=Pose(45.0, float(x), float(y))), far, vise, DETAILS)[0]
-    lengths = LengthUnit.suiting(MILLIMETRE, vise.pitch[0])
+    lengths = LengthUnit.from_typical_length(MILLIMETRE, vise.pitch[0])
     words = texts(page)
     assert "lower left corner as drawn" in words
-    assert {lengths.words(fixture.pose.x), lengths.words(fixture.pose.y)} <= set(words)
+    assert {lengths.format_length(fixture.pose.x), lengths.format_length(fixture.pose.y)} <= set(words)
     assert "X0 Y0" in words and "outside the plan" not in joined((page,))
 
 
@@ -225,19 +225,19 @@ def test_sheet_says_when_the_part_has_no_room_on_one_page() -> None:
 )
 def test_scales_are_the_standard_ones_that_still_fit(largest: float, name: str) -> None:
     """ISO 5455, 1, 2, 5 and their decades, and round ones between."""
-    scale = standard_scale(largest)
+    scale = choose_standard_scale(largest)
     assert scale.name == name and scale.factor <= largest
 
 
 def test_calipers_measure_the_jaw_separation() -> None:
     """Level holes at the opening are S apart, and those with pegs are preferred."""
     fixture, _, vise = example()
-    check = caliper_check(fixture, vise)
+    check = choose_caliper_check(fixture, vise)
     assert (check.left, check.right) == ((1, 0), (0, 0)) and check.distance == pytest.approx(fixture.travel)
     assert check.placed == 1
     both = evolve(fixture.pegs[2], row=4, y=40.0)
     pegs = (fixture.pegs[0], fixture.pegs[1], both, fixture.pegs[3])
-    assert caliper_check(evolve(fixture, pegs=pegs), vise).left == (1, 4)
+    assert choose_caliper_check(evolve(fixture, pegs=pegs), vise).left == (1, 4)
 
 
 @pytest.mark.parametrize("offset", [-25.0, -3.0, 4.0, 6.0, 33.0])
@@ -245,7 +245,7 @@ def test_calipers_know_jaws_that_are_not_level(offset: float) -> None:
     """With a row offset the holes are level within half a pitch and the distance is that of their centres."""
     fixture, _, vise = example()
     vise = evolve(vise, row_offset=offset)
-    check = caliper_check(fixture, vise)
+    check = choose_caliper_check(fixture, vise)
     left = vise.carriers[0].place(*check.left, fixture.travel)
     right = vise.carriers[1].place(*check.right, fixture.travel)
     assert abs(left[1] - right[1]) <= vise.pitch[1] / 2
@@ -255,20 +255,20 @@ def test_calipers_know_jaws_that_are_not_level(offset: float) -> None:
 def test_calipers_keep_off_blocked_holes() -> None:
     """A blocked hole takes no pin."""
     fixture, _, vise = example()
-    assert caliper_check(fixture, evolve(vise, blocked=(Holes("right", 0, 0),))).right != (0, 0)
+    assert choose_caliper_check(fixture, evolve(vise, blocked=(Holes("right", 0, 0),))).right != (0, 0)
 
 
 def test_edges_are_measured_along_the_face() -> None:
     """In the diamond every contact is 20 - (23 sqrt(2) - 20) / sqrt(2) mm from the nearer corner of its side."""
     expected = 20 - (23 * sqrt(2) - 20) / sqrt(2)
-    assert edge_distances(*diamond()) == pytest.approx([expected] * 4)
-    assert edge_distances(*diamond(40.0)) == pytest.approx([40 * expected] * 4)
+    assert measure_edge_distances(*diamond()) == pytest.approx([expected] * 4)
+    assert measure_edge_distances(*diamond(40.0)) == pytest.approx([40 * expected] * 4)
 
 
 def test_tangent_joints_are_no_edges() -> None:
     """With the left corner rounded, the left contacts are as far from an edge as the far corners of their sides."""
     near = 20 - (23 * sqrt(2) - 20) / sqrt(2)
-    assert edge_distances(*diamond(rounded=True)) == pytest.approx([40 - near, 40 - near, near, near])
+    assert measure_edge_distances(*diamond(rounded=True)) == pytest.approx([40 - near, 40 - near, near, near])
 
 
 def test_a_part_without_edges_has_no_distance_from_one() -> None:
@@ -296,12 +296,12 @@ def test_a_part_without_edges_has_no_distance_from_one() -> None:
 def test_cautions_name_what_is_close_weak_or_strong() -> None:
     """Each threshold is warned of below and not above."""
     fixture, _, vise = example()
-    lengths, far = LengthUnit.mm(), [10.0] * 4
+    lengths, far = LengthUnit.in_mm(), [10.0] * 4
 
     def kinds(fixture: Fixture, distances: list[float], **changes: object) -> list[str]:
         return [
             caution.kind
-            for caution in cautions_of(fixture, vise, distances, evolve(DETAILS, **changes), lengths)
+            for caution in list_cautions(fixture, vise, distances, evolve(DETAILS, **changes), lengths)
         ]
 
     def with_quality(**figures: float) -> Fixture:
@@ -326,8 +326,8 @@ def test_a_jaw_force_too_small_for_a_load_is_warned_of() -> None:
     for share, expected in ((0.9, ["load"]), (1.1, [])):
         force = share * needed.needed.value
         cases = load_cases(fixture, workpiece, vise, load, force)
-        found = cautions_of(
-            fixture, vise, [10.0] * 4, evolve(DETAILS, jaw_force=force, loads=cases), LengthUnit.mm()
+        found = list_cautions(
+            fixture, vise, [10.0] * 4, evolve(DETAILS, jaw_force=force, loads=cases), LengthUnit.in_mm()
         )
         assert [caution.kind for caution in found] == expected
 
@@ -335,7 +335,7 @@ def test_a_jaw_force_too_small_for_a_load_is_warned_of() -> None:
 def test_other_fixtures_in_the_same_holes_are_counted() -> None:
     """Fixture 0 put into a table three times has two others in its holes."""
     again = fake_result(5).table.take([0, 1, 0, 2, 0])  # type: ignore[arg-type]
-    assert [again.same_holes(index) for index in range(5)] == [2, 0, 2, 0, 2]
+    assert [again.count_in_same_holes(index) for index in range(5)] == [2, 0, 2, 0, 2]
 
 
 def test_names_in_other_scripts_and_without_end_are_drawn() -> None:
@@ -378,7 +378,7 @@ def test_words_fill_the_second_page_before_a_third_begins() -> None:
     """Blocks at the end stand where a column has room; a view from the side gives way for a few words more."""
     part = Workpiece.from_loops("block", [[(0, 0, 0), (100, 0, 0), (100, 60, 0), (0, 60, 0)]])
     result = design(part, Vise(pitch=20, columns=3, peg_radius=3), best=2)
-    pages = result_sheet(result, 1, thickness=20.0)
+    pages = draw_setup_sheet(result, 1, thickness=20.0)
     assert len(pages) == 2
     words = " ".join(word for page in pages for word, _ in words_of(page))
     assert all(block in words for block in ("Quality", "Counting holes", "Signs", "Side view"))
@@ -389,12 +389,12 @@ def test_columns_are_filled_up_in_any_order_only_to_save_a_page() -> None:
     """In order where that fits; the last ones below the others where it does not; None where nothing does."""
     blocks = [lambda column, k=k: None for k in range(5)]
     heights = [6.0, 5.0, 6.0, 4.0, 1.0]
-    assert filled_runs(blocks, heights, 2, 12.0) == [tuple(blocks[:2]), tuple(blocks[2:])]
+    assert fill_runs(blocks, heights, 2, 12.0) == [tuple(blocks[:2]), tuple(blocks[2:])]
     heights = [6.0, 9.0, 3.0, 5.0, 1.0]
-    found = filled_runs(blocks, heights, 2, 12.0)
+    found = fill_runs(blocks, heights, 2, 12.0)
     assert found is not None and sorted(blocks.index(one) for run in found for one in run) == [0, 1, 2, 3, 4]
     assert all(sum(heights[blocks.index(one)] for one in run) <= 12.0 for run in found)
-    assert filled_runs(blocks, heights, 2, 11.0) is None
+    assert fill_runs(blocks, heights, 2, 11.0) is None
 
 
 def test_a_face_on_a_flat_jaw_is_painted_no_farther_than_the_jaw() -> None:
@@ -404,11 +404,11 @@ def test_a_face_on_a_flat_jaw_is_painted_no_farther_than_the_jaw() -> None:
     fixture = next(
         one for one in design(part, jaw) if {peg.face for peg in one.pegs if peg.beside is None} == {0, 1, 2}
     )
-    bench = bench_of(fixture, part, jaw)
+    bench = make_bench(fixture, part, jaw)
     for index in bench.on_walls:
-        piece = bench.touched_piece(index)
+        piece = bench.find_touched_piece(index)
         ends = sorted(x for x, _ in (piece.start, piece.end))
         assert ends == pytest.approx(sorted(fixture.pegs[k].x for k in bench.on_walls))
         assert ends[1] - ends[0] <= 101.6 + 1e-6 < bench.faces[index].length
     others = [k for k in bench.touching if k not in bench.on_walls]
-    assert others and all(bench.touched_piece(k) == bench.faces[k] for k in others)
+    assert others and all(bench.find_touched_piece(k) == bench.faces[k] for k in others)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from strategies import outlines
 from workhold import Pose, Workpiece
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.upper_side import Mark, distinguishing_marks, marks_of, side_words
+from workhold.drawing.upper_side import Mark, describe_upper_side, find_distinguishing_marks, list_marks
 from workhold.geometry.symmetry import is_own_mirror_image
 
-LENGTHS = LengthUnit.mm()
+LENGTHS = LengthUnit.in_mm()
 SQUARE = [[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0]]
 
 
@@ -50,7 +50,7 @@ def test_known_mirror_images(loops: list[list[list[float]]], same: bool) -> None
     """A square, a ring, a hole on a square's diagonal and a kite are; a hole off it, a parallelogram and a triangle of
     three lengths are not."""
     assert is_same_outline(loops) is same
-    words = side_words(Workpiece.from_loops("part", loops), example()[0], LENGTHS)
+    words = describe_upper_side(Workpiece.from_loops("part", loops), example()[0], LENGTHS)
     assert ("is its own mirror image" in words) is same
 
 
@@ -59,10 +59,10 @@ def test_known_mirror_images(loops: list[list[list[float]]], same: bool) -> None
 @settings(max_examples=60)
 def test_marks_run_round_the_other_way_in_a_part_turned_over(part: Workpiece) -> None:
     """Each of the two marks is found once in the part turned over, and there they run round its middle the other way."""
-    marks = distinguishing_marks(part)
+    marks = find_distinguishing_marks(part)
     if marks is None:
         return
-    twins = [[other for other in marks_of(mirrored(part)) if other.is_like(mark)] for mark in marks]
+    twins = [[other for other in list_marks(mirrored(part)) if other.is_like(mark)] for mark in marks]
     assert [len(found) for found in twins] == [1, 1]
 
     def turn(one: Mark, other: Mark) -> float:
@@ -87,7 +87,7 @@ def test_places_are_told_as_the_part_lies(theta: float, x: float) -> None:
         "part", [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]], circle(50, 20, 4), circle(30, 32, 2)]
     )
     fixture = example()[0]
-    words = side_words(
+    words = describe_upper_side(
         part, type(fixture)(fixture.type, fixture.pegs, Pose(theta, x, 7.0), 36.0, {}), LENGTHS
     )
     eighths = ["right", "upper right", "top", "upper left", "left", "lower left", "bottom", "lower right"]

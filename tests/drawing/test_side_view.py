@@ -26,11 +26,11 @@ from svg_reading import by_class, matrix, texts, to_model
 
 from workhold import Fixture, Peg, Plate, Pose, Workpiece
 from workhold.drawing import SheetDetails
-from workhold.drawing.bench import bench_of, contact_of
+from workhold.drawing.bench import find_contact, make_bench
 from workhold.drawing.scene import UNITS_PER_MM
-from workhold.drawing.sheet_facts import result_details
-from workhold.drawing.sheet_writing import heights_of
-from workhold.drawing.side_view import WAYS, apart, side_view
+from workhold.drawing.sheet_facts import collect_sheet_details
+from workhold.drawing.sheet_writing import find_sheet_heights
+from workhold.drawing.side_view import WAYS, choose_side_view, measure_peg_spread
 from workhold.errors import InputError
 from workhold.model.dowel_lengths import find_shortest_dowel
 from workhold.units import INCH, MILLIMETRE, Unit
@@ -62,37 +62,37 @@ def test_view_is_true_to_the_scale_that_is_written(name: str) -> None:
     """What is drawn of part, pegs and bands is as large as their heights and places, at the scale of the title."""
     result = result_of(name)
     # The sheet has all of it in the middle of the plate.
-    fixture, toolkit = result_details(result, 1)[0], result.toolkit
+    fixture, toolkit = collect_sheet_details(result, 1)[0], result.toolkit
     page = side_page(sheet(result))
     (title,) = (word for word in texts(page) if word.startswith("Side view"))
     paper, model = (float(word) for word in title.rpartition(" ")[2].split(":"))
     (group,) = by_class(page, "side")
     assert matrix(group)[0] == pytest.approx(UNITS_PER_MM * paper / model)
     (way,) = (one for one in WAYS if one.words in title)
-    part = bench_of(fixture, SOLID, toolkit).shown.part
+    part = make_bench(fixture, SOLID, toolkit).shown.part
     (known,), (rest,) = boxes(page, "part-side"), boxes(page, "unknown")
     assert known == pytest.approx(
-        (*way.span(part)[:1], 0.0, way.span(part)[1], PEG_HEIGHT + HEAD_ROOM), abs=2e-3
+        (*way.project_box(part)[:1], 0.0, way.project_box(part)[1], PEG_HEIGHT + HEAD_ROOM), abs=2e-3
     )
-    ends = [way.across(fixture.pose.apply(x, y)) for x, y, _ in FLANGE]
-    low, high = min(*ends, way.span(part)[0]), max(*ends, way.span(part)[1])
+    ends = [way.project(fixture.pose.apply(x, y)) for x, y, _ in FLANGE]
+    low, high = min(*ends, way.project_box(part)[0]), max(*ends, way.project_box(part)[1])
     assert rest == pytest.approx((low, PEG_HEIGHT + HEAD_ROOM, high, HEIGHT), abs=2e-3)
     # Nothing is drawn in corners of which nobody knows; the level face on top is a line.
     assert all(float(one.attrib.get("stroke-width", "0")) == 0.0 for one in by_class(page, "unknown"))
     (upper,) = by_class(page, "upper-face")
     assert upper.attrib["stroke-dasharray"] == "7 4"
     assert re.search("level upper faces .dashed", " ".join(texts(page)))
-    feet = [way.across(fixture.pose.apply(x, y)) for x, y, _ in FOOT]
+    feet = [way.project(fixture.pose.apply(x, y)) for x, y, _ in FOOT]
     assert boxes(page, "foot-face") == [pytest.approx((min(feet), 0.0, max(feet), 0.0), abs=2e-3)]
-    bench = bench_of(fixture, SOLID, toolkit)
+    bench = make_bench(fixture, SOLID, toolkit)
     assert SOLID.solid is not None
     expected = []
     for index in bench.placed:
         peg = fixture.pegs[index]
-        place, _ = contact_of(toolkit.carrier(peg.carrier).contact, (peg.x, peg.y), bench.faces[index])
+        place, _ = find_contact(toolkit.find_carrier(peg.carrier).contact, (peg.x, peg.y), bench.faces[index])
         band = SOLID.solid.bands[peg.face]
         assert band is not None
-        expected.append((way.across(place), band[0], way.across(place), band[1]))
+        expected.append((way.project(place), band[0], way.project(place), band[1]))
     assert sorted(boxes(page, "band")) == [pytest.approx(one, abs=2e-3) for one in sorted(expected)]
 
 
@@ -165,7 +165,7 @@ def test_every_height_is_in_the_pdf(unit: object, size: str) -> None:
     ):
         assert wanted in words
     assert SOLID.solid is not None
-    for peg in result_details(result, 1)[0].pegs:
+    for peg in collect_sheet_details(result, 1)[0].pegs:
         band = SOLID.solid.bands[peg.face]
         assert band is not None and f"{peg.hole} {told(band[0])} {told(band[1])}" in words
 
@@ -224,9 +224,9 @@ def test_what_stands_behind_the_part_is_hidden() -> None:
     places = ((10.0, -2.0), (-2.0, 10.0), (50.0, 32.0), (30.0, 15.0), (62.0, 20.0), (70.0, 40.0))
     fixture, part, plate = rectangle_with_pegs(*places)
     details = SheetDetails(1, 1, sheet_day(), "", "1", thickness=10.0)
-    heights = heights_of(fixture, part, plate, details)
+    heights = find_sheet_heights(fixture, part, plate, details)
     assert heights is not None
-    view = side_view(bench_of(fixture, part, plate), part, heights)
+    view = choose_side_view(make_bench(fixture, part, plate), part, heights)
     assert view.way is WAYS[0]
     assert [one.is_hidden for one in view.contacts] == [False, False, True, True, False, False]
 
@@ -246,14 +246,16 @@ def test_view_is_taken_where_pegs_stand_apart() -> None:
         (((20.0, -2.0), (20.5, 15.0), (21.0, 32.0)), WAYS[1]),
     ):
         fixture, part, plate = rectangle_with_pegs(*places)
-        bench = bench_of(fixture, part, plate)
-        heights = heights_of(fixture, part, plate, SheetDetails(1, 1, sheet_day(), "", "1", thickness=10.0))
-        assert heights is not None and side_view(bench, part, heights).way is way
-        assert apart(bench, way)[0] == max(apart(bench, one)[0] for one in WAYS)
+        bench = make_bench(fixture, part, plate)
+        heights = find_sheet_heights(
+            fixture, part, plate, SheetDetails(1, 1, sheet_day(), "", "1", thickness=10.0)
+        )
+        assert heights is not None and choose_side_view(bench, part, heights).way is way
+        assert measure_peg_spread(bench, way)[0] == max(measure_peg_spread(bench, one)[0] for one in WAYS)
     result = result_of("fence")
-    heights = heights_of(result[0], SOLID, result.toolkit, SheetDetails(1, 1, sheet_day(), "", "1"))
+    heights = find_sheet_heights(result[0], SOLID, result.toolkit, SheetDetails(1, 1, sheet_day(), "", "1"))
     assert heights is not None
-    assert side_view(bench_of(result[0], SOLID, result.toolkit), SOLID, heights).way is WAYS[1]
+    assert choose_side_view(make_bench(result[0], SOLID, result.toolkit), SOLID, heights).way is WAYS[1]
 
 
 def test_pegs_other_than_those_of_the_outline_are_seen() -> None:
@@ -267,11 +269,13 @@ def test_pegs_other_than_those_of_the_outline_are_seen() -> None:
         (0.0, PEG_HEIGHT + 12.0, False),
     ):
         toolkit = evolve(result.toolkit, peg_radius=radius)
-        heights = heights_of(result[0], SOLID, toolkit, details)
+        heights = find_sheet_heights(result[0], SOLID, toolkit, details)
         assert heights is not None and heights.above_plate == PEG_HEIGHT
         assert heights.peg_length == pytest.approx(length) and (heights.dowel is not None) == is_sold
         assert "plate_thickness" not in heights.assumed and ("peg_length" in heights.assumed) != is_sold
-    other = heights_of(result[0], SOLID, result.toolkit, evolve(details, peg_height=5.0, peg_length=30.0))
+    other = find_sheet_heights(
+        result[0], SOLID, result.toolkit, evolve(details, peg_height=5.0, peg_length=30.0)
+    )
     assert other is not None and (other.peg_top, other.peg_length) == (5.0, 30.0)
 
 

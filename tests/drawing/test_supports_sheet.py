@@ -11,10 +11,10 @@ from svg_reading import by_class, texts, to_model
 
 from body_examples import BLOCK, TOOLKITS
 from workhold import Workpiece, design
-from workhold.drawing.hardware_table import hardware_of
+from workhold.drawing.hardware_table import list_hardware
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.supports_drawn import counting_words
-from workhold.drawing.upper_side import side_up_words
+from workhold.drawing.supports_drawn import explain_hole_names
+from workhold.drawing.upper_side import describe_solid_side_up
 from workhold.model.dowel_lengths import find_shortest_dowel, standouts
 from workhold.model.first_side import FirstSide
 from workhold.model.setup import part_zero
@@ -44,7 +44,7 @@ def test_supports_stand_on_the_plan_in_the_holes_that_are_named(name: str) -> No
     (labels,) = by_class(page, "labels")
     written = [element.text for element in labels.iter() if element.tag.endswith("text")]
     for pad, place in zip(found.pads, places, strict=True):
-        there = toolkit.carrier(pad.carrier).place(pad.column, pad.row, travel)
+        there = toolkit.find_carrier(pad.carrier).place(pad.column, pad.row, travel)
         assert place == pytest.approx(there, abs=2e-3) and pad.hole in written
     (tip,) = by_class(page, "top-clamp")
     at = to_model(group, float(tip.attrib["cx"]), float(tip.attrib["cy"]))
@@ -72,14 +72,14 @@ def test_clamp_is_told_from_the_zero_that_the_sheet_uses(zero: str | None, unit:
     found, result = supports_of_sheet("plate"), result_of("plate", False)
     words = printed(sheet(result, thickness=HEIGHT, supports=found, zero=zero, unit=unit))
     assert unit in (MILLIMETRE, INCH)
-    lengths = LengthUnit.suiting(INCH if unit is INCH else MILLIMETRE, 10.0)
+    lengths = LengthUnit.from_typical_length(INCH if unit is INCH else MILLIMETRE, 10.0)
     start = part_zero(BLOCK, zero).point
     x, y = (place - origin for place, origin in zip(found.clamp.at, start, strict=True))
-    assert f"clamp presses at X {lengths.number(x)}, Y {lengths.words(y)}" in words
+    assert f"clamp presses at X {lengths.number(x)}, Y {lengths.format_length(y)}" in words
     there = found.recounted.fixture.pose.apply(*found.clamp.at)
-    assert f"x {lengths.number(float(there[0]))}, y {lengths.words(float(there[1]))}" in words
+    assert f"x {lengths.number(float(there[0]))}, y {lengths.format_length(float(there[1]))}" in words
     assert f"press the part down at X {lengths.number(x)}, Y {lengths.number(y)}" in words
-    assert f"tipping arm {lengths.words(found.clamp.arm)}" in words
+    assert f"tipping arm {lengths.format_length(found.clamp.arm)}" in words
 
 
 @pytest.mark.thorough
@@ -167,13 +167,13 @@ def test_hardware_is_counted(name: str) -> None:
     result, found = result_of(name, False), chosen(name)
     toolkit, pegs = result.toolkit, result[0].placed
     size = None if found is None else (4.0, 7.0)
-    items = hardware_of(result[0], toolkit, 31.0, size, None if found is None else 5.0)
-    tips = [peg for peg in pegs if toolkit.carrier(peg.carrier).on is not None]
+    items = list_hardware(result[0], toolkit, 31.0, size, None if found is None else 5.0)
+    tips = [peg for peg in pegs if toolkit.find_carrier(peg.carrier).on is not None]
     assert sum(one.count for one in items if one.length == 31.0) == len(pegs) - len(tips)
     assert (
         sum(one.count for one in items if one.note) == len(tips) + (found is not None) + (name == "flats") * 4
     )
-    radii = {toolkit.carrier(peg.carrier).peg_radius for peg in pegs}
+    radii = {toolkit.find_carrier(peg.carrier).peg_radius for peg in pegs}
     sizes = {one.diameter for one in items if one.length == 31.0 or one.name in ("clamp", "clamps")}
     assert sizes == {2 * radius for radius in radii}
     assert sum(one.count for one in items if one.name.startswith("bolt")) == len(tips)
@@ -241,7 +241,7 @@ def test_holes_with_other_names_are_said_to_be_so() -> None:
             f"{peg.hole} {peg.carrier} {peg.touched} {peg.x:.3f} {peg.y:.3f}".replace("-0.000", "0.000")
             in words
         )
-    assert counting_words
+    assert explain_hole_names
 
 
 FIRST = FirstSide(
@@ -264,13 +264,13 @@ def test_second_side_says_what_the_first_did() -> None:
     assert "−z of the file points up." in printed(sheet(result_of("plate")))
     assert SOLID.solid is not None
     lonely = FirstSide("z", "z", "the same side up", (), (), ())
-    assert side_up_words(SOLID.solid, lonely) == [
+    assert describe_solid_side_up(SOLID.solid, lonely) == [
         "The same side is up as in the first set-up: −z of the file.",
         "The first set-up names no face that it cuts.",
         "No face is touched in both set-ups: they locate on different faces.",
     ]
     out_of_reach = FirstSide("-z", "z", "turned", (), (5,), (1, 2))
-    assert side_up_words(SOLID.solid, out_of_reach)[1:] == [
+    assert describe_solid_side_up(SOLID.solid, out_of_reach)[1:] == [
         "The pegs cannot reach the faces that the first set-up cuts (face 5 of the solid).",
         "Faces 1 and 2 of the solid are touched in both set-ups, in the first by its best fixture.",
     ]

@@ -24,14 +24,14 @@ from svg_reading import NAMESPACE, by_class, matrix, texts
 from workhold import Peg
 from workhold.cli.show_command import load_tables
 from workhold.cli.table import print_tables
-from workhold.cli.tables import fixture_tables, quality_table
+from workhold.cli.tables import tabulate_fixture_setup, tabulate_quality
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbnails
-from workhold.drawing.pdf import svg_to_pdf
+from workhold.drawing.pdf import convert_svg_to_pdf
 from workhold.drawing.scene import Box
-from workhold.files.dxf.writer import setup_dxf
-from workhold.files.result.fixture_text import pin_list
+from workhold.files.dxf.writer import make_setup_dxf
+from workhold.files.result.fixture_text import write_pin_list
 from workhold.units import MILLIMETRE
-from workhold.web.answers import fixture_answer
+from workhold.web.answers import describe_fixture
 
 DAY = date(2026, 1, 2)
 FORCE = 1750.0
@@ -103,7 +103,7 @@ def sheet(held_number: int) -> str:
     loads = load_cases_of(held)
     details = SheetDetails(3, 70, DAY, "0" * 64, "1.2.3", jaw_force=FORCE, friction=0.2, loads=loads)
     document = pypdfium2.PdfDocument(
-        svg_to_pdf(draw_sheet(held.fixture, held.workpiece, held.toolkit, details), DAY)
+        convert_svg_to_pdf(draw_sheet(held.fixture, held.workpiece, held.toolkit, details), DAY)
     )
     return " ".join(" ".join(page.get_textpage().get_text_bounded() for page in document).split())
 
@@ -337,7 +337,7 @@ def test_the_terminal_tells_the_fixture(
     monkeypatch.delenv("COLUMNS", raising=False)
     fixture, toolkit, noun = held.fixture, held.toolkit, "clamp" if tips_of(held.fixture) else "jaw"
     cases = load_cases_of(held)
-    tables = (*fixture_tables(fixture, toolkit, 3, 70), "", quality_table(fixture, noun))
+    tables = (*tabulate_fixture_setup(fixture, toolkit, 3, 70), "", tabulate_quality(fixture, noun))
     print_tables(*tables, *load_tables(cases, fixture, toolkit))
     said = capsys.readouterr().out
     lines = [re.split(r"\s{2,}", line.strip()) for line in said.splitlines()]
@@ -385,7 +385,7 @@ def test_the_terminal_tells_the_fixture(
 def test_files_and_thumbnails_tell_the_fixture(held: Held) -> None:
     """The words in a drawing for a CAM system and below a thumbnail, and the list of pins."""
     fixture, told = held.fixture, settings(held)
-    drawing = ezdxf.read(StringIO(setup_dxf(fixture, held.workpiece, held.toolkit).decode()))  # type: ignore[attr-defined]
+    drawing = ezdxf.read(StringIO(make_setup_dxf(fixture, held.workpiece, held.toolkit).decode()))  # type: ignore[attr-defined]
     written = [entity for entity in drawing.modelspace() if entity.dxftype() == "TEXT"]
     assert [text.dxf.text for text in written if " = " in text.dxf.text] == [
         f"{s} = {n:.6g} mm" for s, n in told
@@ -398,7 +398,7 @@ def test_files_and_thumbnails_tell_the_fixture(held: Held) -> None:
     assert title.replace("-", "−") in caption
     signs = " and ".join(dict.fromkeys(sign for sign, _ in told))
     assert f"{signs} = {', '.join(f'{mm(length)} mm' for _, length in told)}" in caption
-    pins = pin_list(fixture, held.toolkit, MILLIMETRE, None, None).splitlines()[1:]
+    pins = write_pin_list(fixture, held.toolkit, MILLIMETRE, None, None).splitlines()[1:]
     standing = [peg for peg in fixture.pegs if not peg.carrier.startswith(("clamp", "wall"))]
     assert [line.split(",")[0] for line in pins] == [peg.hole for peg in standing]
     for line, peg in zip(pins, standing, strict=True):
@@ -409,7 +409,7 @@ def test_files_and_thumbnails_tell_the_fixture(held: Held) -> None:
 def test_the_page_is_sent_the_fixture(held: Held) -> None:
     """Holes, faces, places and forces in one order, the settings, and of each carrier which way it clamps."""
     fixture = held.fixture
-    sent = fixture_answer(fixture, held.workpiece, held.toolkit)
+    sent = describe_fixture(fixture, held.workpiece, held.toolkit)
     title = (
         f"Clamp{'s' * (len(held.directions) == 2)} {fixture.direction}"
         if held.directions

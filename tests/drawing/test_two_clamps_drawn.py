@@ -12,11 +12,11 @@ from sheet_reading import collisions
 from svg_reading import by_class, texts
 
 from workhold import Load, Plate, Restrictions, Result, Workpiece, design, load
-from workhold.cli.tables import counts_sentence, fixture_tables, result_table
+from workhold.cli.tables import count_fixtures_in_words, tabulate_fixture_setup, tabulate_result
 from workhold.drawing import SheetDetails, draw_fixture, draw_sheet, draw_thumbnails
-from workhold.files.dxf.writer import setup_dxf
-from workhold.files.result.fixture_text import pin_list
-from workhold.listing.identity import entries
+from workhold.files.dxf.writer import make_setup_dxf
+from workhold.files.result.fixture_text import write_pin_list
+from workhold.listing.identity import make_entries
 from workhold.model.clamps import order_words
 from workhold.model.setup import list_length_settings
 from workhold.model.shown import shown
@@ -65,7 +65,7 @@ def test_each_clamp_has_its_own_length(pair: str, bolted: bool) -> None:
     assert len(by_class(svg, "clamp-body")) == (2 if bolted else 0)
     words = texts(svg)
     for setting in settings:
-        assert f"{setting.sign} = {MILLIMETRE.text(setting.length)}".replace("-", "−") in words
+        assert f"{setting.sign} = {MILLIMETRE.format_length(setting.length)}".replace("-", "−") in words
     assert {peg.hole for peg in fixture.pegs} <= set(words)
     assert order_words(fixture)[:20] in " ".join(words)
     assert len(by_class(draw_thumbnails([fixture], RECTANGLE, plate, ["one"]), "peg")) == 5
@@ -105,18 +105,18 @@ def test_files_have_both_clamps() -> None:
     """The DXF names both strokes and both clamps; the pin list has the locators alone."""
     result = held()
     fixture, plate = result[0], result.toolkit
-    drawing = setup_dxf(fixture, RECTANGLE, plate).decode()
+    drawing = make_setup_dxf(fixture, RECTANGLE, plate).decode()
     for setting in list_length_settings(fixture, plate):
         assert f"{setting.sign} = {setting.length:.6g} mm" in drawing
     assert all(peg.hole in drawing for peg in fixture.pegs)
-    assert pin_list(fixture, plate, MILLIMETRE, None, None).count("\n") == 4
+    assert write_pin_list(fixture, plate, MILLIMETRE, None, None).count("\n") == 4
 
 
 def test_the_terminal_tells_pairs_seats_and_order() -> None:
     """Five pegs in two columns, the number of pairs at the seat, both strokes; and the ending sentence."""
     result = held()
     fixture = result[0]
-    table = result_table(result, entries(result), 5)
+    table = tabulate_result(result, make_entries(result), 5)
     headings = [column.lstrip(">") for column in table.columns]
     row = dict(zip(headings, table.rows[0], strict=True))
     assert row["locators"].split() == [peg.hole for peg in fixture.pegs[:3]]
@@ -125,9 +125,9 @@ def test_the_terminal_tells_pairs_seats_and_order() -> None:
     assert row["stroke mm"].split() == [
         f"{setting.length:.1f}" for setting in list_length_settings(fixture, result.toolkit)
     ]
-    assert max(map(len, table.fitted(80).lines[:2])) <= 80 and "clamp freedom deg" in headings
-    assert f"the best of {result.pairs} pairs of clamps at each seat" in counts_sentence(result)
-    said = [part for part in fixture_tables(fixture, result.toolkit, 1, 1) if isinstance(part, str)]
+    assert max(map(len, table.fit_to_width(80).lines[:2])) <= 80 and "clamp freedom deg" in headings
+    assert f"the best of {result.pairs} pairs of clamps at each seat" in count_fixtures_in_words(result)
+    said = [part for part in tabulate_fixture_setup(fixture, result.toolkit, 1, 1) if isinstance(part, str)]
     assert order_words(fixture) in said and sum("bolted in" in line for line in said) == 2
 
 

@@ -11,7 +11,7 @@ from attrs import evolve
 from held_any_way import AHEAD, HELD, Held
 from svg_reading import NAMESPACE, matrix, to_model
 
-from workhold.drawing.bench import bench_of
+from workhold.drawing.bench import make_bench
 from workhold.model.setup import list_length_settings
 from workhold.presenting.zoomed_picture import draw_small, draw_zoomed
 
@@ -23,7 +23,7 @@ NUMBER = r"-?\d+(?:\.\d+)?"
 def picture_of(
     held: Held, size: tuple[float, float] = SIZE, placed: tuple[float, float] = (0, 0)
 ) -> ET.Element:
-    bench = evolve(bench_of(held.fixture, held.workpiece, held.toolkit), is_exact=True)
+    bench = evolve(make_bench(held.fixture, held.workpiece, held.toolkit), is_exact=True)
     return ET.fromstring(draw_zoomed(bench, "part", size, placed))
 
 
@@ -85,7 +85,7 @@ def test_words_are_in_the_picture_and_none_lies_on_another(held: Held) -> None:
         x, y = float(word.attrib["x"]), float(word.attrib["y"])
         assert not any(a < x < c and b < y < d for a, b, c, d in boxes), word.text
     used = {one.text for one in of_class(root, "used")}
-    cells = [peg for peg in held.fixture.pegs if held.toolkit.carrier(peg.carrier).has_lattice]
+    cells = [peg for peg in held.fixture.pegs if held.toolkit.find_carrier(peg.carrier).has_lattice]
     assert {str(peg.row + 1) for peg in cells} | {chr(ord("A") + peg.column) for peg in cells} <= used
 
 

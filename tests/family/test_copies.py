@@ -13,7 +13,14 @@ from svg_reading import by_class
 from workhold import Fence, Fixture, Plate, Query, Result, Vise, Workpiece, answer
 from workhold.errors import InputError
 from workhold.family import copies as module
-from workhold.family.copies import Packing, copies_of, draw_copies, packing_of, places_on, too_near_shifts
+from workhold.family.copies import (
+    Packing,
+    draw_copies,
+    find_too_near_shifts,
+    list_places_on_plate,
+    make_copies,
+    pack_copies,
+)
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
 
@@ -48,7 +55,7 @@ def shapes(fixture: Fixture, part: Workpiece, toolkit: Plate) -> tuple[Any, Any]
         loops.append([s.at(s.half_extent * (2 * k / 64 - 1)) for s in placed for k in range(64)])
     bodies = []
     for peg in fixture.pegs:
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         if carrier.is_wall:
             continue
         start = (peg.x, peg.y)
@@ -68,7 +75,7 @@ def test_what_is_too_near_is_so_by_another_library(results: dict[str, Result], n
     toolkit = result.toolkit
     assert isinstance(toolkit, Plate)
     part, bodies = shapes(result[0], result.workpiece, toolkit)
-    near = too_near_shifts(result[0], result.workpiece, toolkit, gap, (8, 6))
+    near = find_too_near_shifts(result[0], result.workpiece, toolkit, gap, (8, 6))
     assert (0, 0) in near
     for i in range(-8, 9):
         for j in range(-6, 7):
@@ -90,9 +97,9 @@ def test_pegs_keep_clear_of_pegs_however_far_the_parts_are_apart(
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     outline = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
     bodies = module.Bodies(outline, np.array([[[0.5, 0.5], [0.5, 0.5]]]), np.array([9.0]))
-    monkeypatch.setattr(module, "bodies_of", lambda *given: bodies)
+    monkeypatch.setattr(module, "collect_bodies", lambda *given: bodies)
     result = results["tips alone"]
-    near = too_near_shifts(result[0], result.workpiece, Plate(pitch=17, peg_radius=3), 0.5, (3, 3))
+    near = find_too_near_shifts(result[0], result.workpiece, Plate(pitch=17, peg_radius=3), 0.5, (3, 3))
     assert near == {(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1)}
 
 
@@ -117,9 +124,9 @@ def test_no_more_fit_by_trying_everything(
 ) -> None:
     result = results[name]
     for fixture in result[:2]:
-        packing = packing_of(fixture, result.workpiece, result.toolkit, *size)
-        places = places_on(fixture, result.toolkit, *size)
-        near = too_near_shifts(fixture, result.workpiece, result.toolkit, 1.0, (size[0], size[1]))
+        packing = pack_copies(fixture, result.workpiece, result.toolkit, *size)
+        places = list_places_on_plate(fixture, result.toolkit, *size)
+        near = find_too_near_shifts(fixture, result.workpiece, result.toolkit, 1.0, (size[0], size[1]))
         assert set(packing.shifts) <= set(places)
         assert all(
             (a - c, b - d) not in near
@@ -133,13 +140,13 @@ def test_no_more_fit_by_trying_everything(
 
 def test_copies_stand_on_the_plate(results: dict[str, Result]) -> None:
     result = results["two clamps"]
-    packing = packing_of(result[0], result.workpiece, result.toolkit, 12, 9)
+    packing = pack_copies(result[0], result.workpiece, result.toolkit, 12, 9)
     assert len(packing.shifts) > 2
-    for fixture in copies_of(result.table.take(slice(0, 1)), result.toolkit, result.workpiece, packing):
+    for fixture in make_copies(result.table.take(slice(0, 1)), result.toolkit, result.workpiece, packing):
         assert all(0 <= peg.column < 12 and 0 <= peg.row < 9 for peg in fixture.pegs)
     # A fence has its rows from the wall.
     fence = results["fence"]
-    assert {j for _, j in packing_of(fence[0], fence.workpiece, fence.toolkit, 20, 9).shifts} == {0}
+    assert {j for _, j in pack_copies(fence[0], fence.workpiece, fence.toolkit, 20, 9).shifts} == {0}
 
 
 @pytest.mark.thorough
@@ -147,29 +154,29 @@ def test_where_time_is_over_what_is_known_is_told(
     results: dict[str, Result], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     result = results["strokes"]
-    proven = packing_of(result[0], result.workpiece, result.toolkit, 20, 14)
-    hasty = packing_of(result[0], result.workpiece, result.toolkit, 20, 14, seconds=0.0)
+    proven = pack_copies(result[0], result.workpiece, result.toolkit, 20, 14)
+    hasty = pack_copies(result[0], result.workpiece, result.toolkit, 20, 14, seconds=0.0)
     assert 0 < len(hasty.shifts) <= len(proven.shifts) <= hasty.at_most
     monkeypatch.setattr(module, "MOST_PLACES", 3)
-    large = packing_of(result[0], result.workpiece, result.toolkit, 20, 14)
+    large = pack_copies(result[0], result.workpiece, result.toolkit, 20, 14)
     assert 0 < len(large.shifts) <= len(proven.shifts) <= large.at_most
 
 
 def test_refusals(results: dict[str, Result]) -> None:
     result = results["strokes"]
     with pytest.raises(InputError, match="a plate of 2 × 2 holes does not hold this fixture once: it takes"):
-        packing_of(result[0], result.workpiece, result.toolkit, 2, 2)
+        pack_copies(result[0], result.workpiece, result.toolkit, 2, 2)
     vise = answer(Query(LEVER, Vise(pitch=10, columns=1, peg_radius=3), best=1), threads=1)
     with pytest.raises(InputError, match="a vise holds one part"):
-        packing_of(vise[0], LEVER, vise.toolkit, 9, 9)
+        pack_copies(vise[0], LEVER, vise.toolkit, 9, 9)
 
 
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", HELD)
 def test_the_plate_is_drawn_with_every_copy(results: dict[str, Result], name: str) -> None:
     result = results[name]
-    packing = Packing(packing_of(result[0], result.workpiece, result.toolkit, 14, 8).shifts, 9)
-    copies = copies_of(result.table.take(slice(0, 1)), result.toolkit, result.workpiece, packing)
+    packing = Packing(pack_copies(result[0], result.workpiece, result.toolkit, 14, 8).shifts, 9)
+    copies = make_copies(result.table.take(slice(0, 1)), result.toolkit, result.workpiece, packing)
     svg = draw_copies(copies, result.workpiece, result.toolkit, (14, 8))
     assert len(by_class(svg, "copy")) == len(packing.shifts)
     (holes,) = by_class(svg, "holes")

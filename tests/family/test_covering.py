@@ -17,14 +17,14 @@ from workhold.family.covering import (
     LossTable,
     Point,
     Search,
-    as_sets,
+    bound_cover_size,
+    compute_curve,
+    convert_bits_to_sets,
     cover,
-    curve_of,
-    first_cover,
-    greedy,
-    maximal,
-    packing,
-    points_of,
+    find_first_cover,
+    find_greedy_cover,
+    find_maximal_sets,
+    list_curve_points,
 )
 from workhold.family.solver import load_solver
 
@@ -56,14 +56,14 @@ def test_covers_are_the_fewest_and_the_first(seed: int) -> None:
     found = cover(sets)
     assert found.is_least and found.at_least == len(every[0])
     assert found.sets in every
-    assert first_cover(sets, len(found.sets), found.sets) == every[0]
-    assert 1 <= packing(sets) <= len(every[0])
+    assert find_first_cover(sets, len(found.sets), found.sets) == every[0]
+    assert 1 <= bound_cover_size(sets) <= len(every[0])
 
 
 def test_greedy_is_not_enough_where_the_largest_set_misleads() -> None:
     # Two halves of six, and a set of four across them that greed takes first.
     sets = np.array([[1, 1, 1, 1, 0, 0], [1, 0, 1, 0, 1, 0], [0, 1, 0, 1, 0, 1]], np.bool_)
-    assert greedy(sets) == (0, 1, 2)
+    assert find_greedy_cover(sets) == (0, 1, 2)
     assert cover(sets) == Cover((1, 2), 2)
 
 
@@ -74,16 +74,16 @@ def test_without_time_it_is_told_what_is_known() -> None:
     least = cover(sets)
     assert least.is_least
     assert 1 <= found.at_least <= len(least.sets) <= len(found.sets)
-    assert first_cover(sets, len(found.sets), found.sets, deadline=0.0)
+    assert find_first_cover(sets, len(found.sets), found.sets, deadline=0.0)
 
 
 def test_sets_inside_others_go() -> None:
     masks = np.array([[0b011], [0b111], [0b100], [0b1000], [0b111], [0b0]], np.uint64)
-    assert maximal(masks).tolist() == [1, 3]
+    assert find_maximal_sets(masks).tolist() == [1, 3]
     # Members beyond the 64th are in a word of their own.
     wide = np.array([[1, 0], [1, 1], [0, 2], [0, 3]], np.uint64)
-    assert sorted(maximal(wide).tolist()) == [1, 3]
-    assert as_sets(wide, 66)[:, [0, 64, 65]].tolist() == [
+    assert sorted(find_maximal_sets(wide).tolist()) == [1, 3]
+    assert convert_bits_to_sets(wide, 66)[:, [0, 64, 65]].tolist() == [
         [True, False, False],
         [True, True, False],
         [False, False, True],
@@ -115,8 +115,8 @@ def test_a_bound_of_the_solver_is_rounded_up(monkeypatch: pytest.MonkeyPatch) ->
         ],
         np.bool_,
     )
-    assert greedy(sets) == (0, 1, 2, 3)
-    monkeypatch.setattr("workhold.family.covering.packing", lambda sets: 1)
+    assert find_greedy_cover(sets) == (0, 1, 2, 3)
+    monkeypatch.setattr("workhold.family.covering.bound_cover_size", lambda sets: 1)
     assert cover(sets) == Cover((0, 1, 2, 3), 3)
 
 
@@ -127,7 +127,7 @@ def test_larger_covers_are_proven_too(seed: int) -> None:
     sets = np.array([[random.random() < 0.08 for _ in range(60)] for _ in range(120)])
     sets[range(60), range(60)] = True
     found = cover(sets)
-    assert found.is_least and len(found.sets) < len(greedy(sets))
+    assert found.is_least and len(found.sets) < len(find_greedy_cover(sets))
     assert sets[list(found.sets)].any(axis=0).all()
 
 
@@ -182,7 +182,7 @@ def worst_loss(losses: NDArray[np.float64], point: Point) -> float:
 def test_families_of_six_by_trying_everything(seed: int) -> None:
     random = Random(seed)
     losses = random_losses(random, random.randint(4, 12), 6)
-    points = curve_of(table_from(losses))
+    points = compute_curve(table_from(losses))
     expected = least_losses(losses)
     steps = {k: loss for k, loss in expected.items() if k - 1 not in expected or loss < expected[k - 1]}
     assert {point.setups: point.loss for point in points} == steps
@@ -206,8 +206,8 @@ def first_patterns(losses: NDArray[np.float64], point: Point) -> tuple[int, ...]
 
 def test_a_largest_loss_ends_the_curve() -> None:
     losses = random_losses(Random(3), 9, 6)
-    whole = curve_of(table_from(losses))
-    bounded = curve_of(table_from(losses), 1.2)
+    whole = compute_curve(table_from(losses))
+    bounded = compute_curve(table_from(losses), 1.2)
     assert [point for point in whole if point.loss <= 1.2][1:] == list(bounded[1:])
     assert bounded[0].setups == min(point.setups for point in whole if point.loss <= 1.2)
     assert len(bounded) < len(whole)
@@ -218,7 +218,7 @@ def test_seventy_members_take_two_words() -> None:
     losses = np.full((36, 70), np.nan)
     for pattern in range(36):
         losses[pattern, pattern : pattern + 35] = 1.0 + pattern / 100
-    (point,) = curve_of(table_from(losses))
+    (point,) = compute_curve(table_from(losses))
     assert (point.setups, point.patterns, point.loss) == (2, (0, 35), 1.35)
 
 
@@ -230,7 +230,7 @@ def test_when_time_is_over_it_is_told_what_is_known() -> None:
         for member in random.sample(range(24), 4):
             losses[pattern, member] = random.choice([1.0, 1.2, 1.5])
     losses[range(24), range(24)] = 1.0
-    known, proven = curve_of(table_from(losses), deadline=0.0), curve_of(table_from(losses))
+    known, proven = compute_curve(table_from(losses), deadline=0.0), compute_curve(table_from(losses))
     assert not all(point.is_least and point.at_least == point.setups for point in known)
     for point in known:
         assert worst_loss(losses, point) <= point.loss
@@ -241,7 +241,7 @@ def test_when_time_is_over_it_is_told_what_is_known() -> None:
 
 def test_progress_ends_at_one() -> None:
     told: list[float] = []
-    curve_of(table_from(random_losses(Random(1), 12, 6)), progress=told.append)
+    compute_curve(table_from(random_losses(Random(1), 12, 6)), progress=told.append)
     assert told == sorted(told) and told[-1] == pytest.approx(1.0)
 
 
@@ -249,7 +249,10 @@ def test_a_number_is_the_least_where_the_bound_before_needs_more() -> None:
     losses = np.array([[1.0, np.nan], [np.nan, 1.0], [1.5, 1.5]])
     search = Search(table_from(losses), np.array([1.0, 1.5]), None, lambda fraction: None)
     search.covers = {0: Cover((0, 1), 2), 1: Cover((2,), 1)}
-    assert [point.is_least for point in points_of(search)] == [True, True]
+    assert [point.is_least for point in list_curve_points(search)] == [True, True]
     # One set-up is not ruled out at the smaller bound.
     search.covers = {0: Cover((0, 1), 1), 1: Cover((2,), 1)}
-    assert [(point.at_least, point.is_least) for point in points_of(search)] == [(1, True), (1, False)]
+    assert [(point.at_least, point.is_least) for point in list_curve_points(search)] == [
+        (1, True),
+        (1, False),
+    ]

@@ -14,12 +14,12 @@ from attrs import evolve
 from family_parts import shop_parts
 from workhold import Fence, Peg, Plate, Query, Restrictions, Vise, Workpiece, answer
 from workhold.errors import InputError
-from workhold.family.family import Asked, Family, family_of, family_text, peg_entry
-from workhold.family.members import RANKINGS, losses, member_of, threshold, with_half_turns
-from workhold.family.patterns import holes_of, shifted, turned
+from workhold.family.family import Asked, Family, make_family, make_peg_entry, write_family_json
+from workhold.family.members import RANKINGS, add_half_turns, compute_losses, make_member, make_threshold
+from workhold.family.patterns import list_holes, shift_fixture, turn_fixtures_over
 from workhold.family.plan import Holding
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.ranking import measured
+from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import CLOSURE_MARGIN, FIGURES, LOCATION_ERROR
 from workhold.statics.effective_error import EffectiveErrors
@@ -42,7 +42,7 @@ def asked(parts: list[Workpiece], toolkit: Toolkit, **more: object) -> list[Aske
 @pytest.fixture(scope="module")
 def twenty() -> Family:
     """Twenty parts of a shop in a vise with two columns."""
-    return family_of(asked(TWENTY, WIDE), threads=1)
+    return make_family(asked(TWENTY, WIDE), threads=1)
 
 
 def as_listed(one: Holding) -> FixtureTable:
@@ -51,9 +51,9 @@ def as_listed(one: Holding) -> FixtureTable:
     if isinstance(toolkit, Vise):
         return one.row
     columns, rows = (
-        min(hole[axis] for hole in holes_of(one.row, toolkit) if hole[axis] < 1 << 40) for axis in (1, 2)
+        min(hole[axis] for hole in list_holes(one.row, toolkit) if hole[axis] < 1 << 40) for axis in (1, 2)
     )
-    return shifted(one.row, toolkit, {0: -columns}, 0 if toolkit.wall is not None else -rows)
+    return shift_fixture(one.row, toolkit, {0: -columns}, 0 if toolkit.wall is not None else -rows)
 
 
 def prove(family: Family) -> None:
@@ -69,14 +69,16 @@ def prove(family: Family) -> None:
                 fixture = make_fixture_of_row(as_listed(one), family.toolkit, 0, one.member.query.workpiece)
                 ruling = judges[id(one.member)].rule_on(fixture)
                 assert ruling.verdict == "proven", ruling.reason
-                low, high = EffectiveJudge(one.member.query, None).error(fixture)
+                low, high = EffectiveJudge(one.member.query, None).compute_effective_error(fixture)
                 error = (low + high) / 2e9 if family.figure.key == "location_error" else one.figure
                 # On a plate with ends a pattern that stands elsewhere may hang over where the list's does not.
                 hanging = (1.0,) if family.toolkit.rows is None else (1.0, 1.1, 1 / 1.1)
                 ratio = error / one.member.best
                 assert any(ratio == pytest.approx(one.loss * factor, rel=1e-6) for factor in hanging)
                 if one.in_place:
-                    assert holes_of(one.row, family.toolkit) == holes_of(setup.standing.row, family.toolkit)
+                    assert list_holes(one.row, family.toolkit) == list_holes(
+                        setup.standing.row, family.toolkit
+                    )
 
 
 @pytest.mark.thorough
@@ -104,7 +106,7 @@ def test_numbers_are_those_of_the_list(twenty: Family) -> None:
         result = answer(one.member.query, threads=1)
         listed = result.table.take(slice(one.number - 1, one.number))
         if one.turned:
-            listed = measured_again(turned(listed, WIDE), one)
+            listed = measured_again(turn_fixtures_over(listed, WIDE), one)
         assert float(listed.quality[0, LOCATION_ERROR]) == one.figure
         assert sorted(listed.face[0]) == sorted(one.row.face[0])
         assert len(result) == one.member.fixtures
@@ -114,18 +116,18 @@ def measured_again(table: FixtureTable, one: Holding) -> FixtureTable:
     """A table with its figures."""
     from workhold.contact.problem import Problem
 
-    return measured(table, Problem.of(one.member.query))
+    return measure_table(table, Problem.of(one.member.query))
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("first", [0, 7])
 def test_the_fewest_of_six_parts_by_trying_everything(first: int) -> None:
     parts = TWENTY[first : first + 6]
-    family = family_of(asked(parts, VISE), threads=1)
+    family = make_family(asked(parts, VISE), threads=1)
     best: dict[tuple[object, ...], list[float]] = defaultdict(lambda: [inf] * 6)
     for number, one in enumerate(asked(parts, VISE)):
         result = answer(one.query, threads=1)
-        table, _ = with_half_turns(result.table, one.query)
+        table, _ = add_half_turns(result.table, one.query)
         table = table.take(np.flatnonzero(~unfit(table.quality, one.query.tolerance)))
         errors = np.round(EffectiveErrors.of(one.query).errors(table), 9)
         for row, error in enumerate(errors.tolist()):
@@ -167,7 +169,7 @@ TOOLKITS: dict[str, Toolkit] = {
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_plans_in_every_toolkit_are_proven(name: str) -> None:
-    family = family_of(asked(TWENTY[:4], TOOLKITS[name]), threads=1)
+    family = make_family(asked(TWENTY[:4], TOOLKITS[name]), threads=1)
     assert len(family.members) >= 2
     assert len(family.members) + len(family.left_out) == 4
     prove(family)
@@ -175,10 +177,10 @@ def test_plans_in_every_toolkit_are_proven(name: str) -> None:
 
 def test_what_no_pattern_holds_is_named() -> None:
     disc = Workpiece.from_loops("disc", [[[0, 0, 1], [40, 0, 1]]])
-    family = family_of(asked([TWENTY[0], disc], VISE), threads=1)
+    family = make_family(asked([TWENTY[0], disc], VISE), threads=1)
     assert [one.name for one in family.members] == [TWENTY[0].name]
     assert [(one.name, one.reason) for one in family.left_out] == [("disc", "it has no fixture in this vise")]
-    nothing = family_of(asked([disc], VISE), threads=1)
+    nothing = make_family(asked([disc], VISE), threads=1)
     assert nothing.points == () and nothing.plans == ()
     with pytest.raises(InputError, match="no pattern holds any"):
         nothing.plan(2)
@@ -187,19 +189,19 @@ def test_what_no_pattern_holds_is_named() -> None:
 @pytest.mark.thorough
 def test_rules_restrict_what_is_used() -> None:
     parts = TWENTY[:4]
-    free = family_of(asked(parts, VISE), threads=1)
+    free = make_family(asked(parts, VISE), threads=1)
     error = free.figure.key
     least = {member.name: float(member.table.quality[:, LOCATION_ERROR].min()) for member in free.members}
     limit = sorted(least.values())[1] + 1e-6
-    strict = family_of(asked(parts, VISE), thresholds=[threshold(error, limit)], threads=1)
+    strict = make_family(asked(parts, VISE), thresholds=[make_threshold(error, limit)], threads=1)
     assert sorted(one.name for one in strict.left_out) == sorted(
         name for name, value in least.items() if value > limit
     )
     assert all("may be used" in one.reason for one in strict.left_out)
-    bounded = family_of(asked(parts, VISE), most_loss=1.001, threads=1)
+    bounded = make_family(asked(parts, VISE), most_loss=1.001, threads=1)
     assert all(point.loss <= 1.001 for point in bounded.points)
     faces = Restrictions(avoid=(2,))
-    other = family_of(asked(parts, VISE, restrictions=faces), threads=1)
+    other = make_family(asked(parts, VISE, restrictions=faces), threads=1)
     touched = {
         int(face)
         for plan in other.plans
@@ -209,13 +211,13 @@ def test_rules_restrict_what_is_used() -> None:
     }
     assert 2 not in touched and touched
     with pytest.raises(InputError, match="every loss is 1 or more"):
-        family_of(asked(parts, VISE), most_loss=0.5)
+        make_family(asked(parts, VISE), most_loss=0.5)
 
 
 def test_angles_hold_after_the_half_turn_too() -> None:
     within = Restrictions(angles=((0.0, 170.0),))
-    family = family_of(asked(TWENTY[:4], VISE, restrictions=within), threads=1)
-    table, number = with_half_turns(
+    family = make_family(asked(TWENTY[:4], VISE, restrictions=within), threads=1)
+    table, number = add_half_turns(
         answer(asked(TWENTY[:1], VISE)[0].query, threads=1).table, family.members[0].query
     )
     assert (np.degrees(table.theta[len(set(number.tolist())) :]) % 360.0 <= 170.0 + 1e-9).all()
@@ -224,15 +226,15 @@ def test_angles_hold_after_the_half_turn_too() -> None:
             assert -1e-9 <= one.fixture.pose.theta_deg <= 170.0 + 1e-9
     blocked = Query(TWENTY[0], Vise(pitch=10, columns=2, peg_radius=3, blocked=["L-A1"]))
     result = answer(blocked, threads=1)
-    assert len(with_half_turns(result.table, blocked)[0]) == len(result) > 0
+    assert len(add_half_turns(result.table, blocked)[0]) == len(result) > 0
 
 
 def test_losses_are_ratios_whichever_way_is_better() -> None:
     error, margin = (next(f for f in FIGURES if f.key == key) for key in ("location_error", "closure_margin"))
-    assert losses(np.array([0.04, 0.02, np.nan, np.inf]), error).tolist() == [2.0, 1.0, inf, inf]
-    assert losses(np.array([0.1, 0.2, 0.0]), margin).tolist() == [2.0, 1.0, inf]
-    assert losses(np.array([0.0, 1.0, 0.0]), error).tolist() == [1.0, inf, 1.0]
-    assert losses(np.full(2, np.nan), error).tolist() == [inf, inf]
+    assert compute_losses(np.array([0.04, 0.02, np.nan, np.inf]), error).tolist() == [2.0, 1.0, inf, inf]
+    assert compute_losses(np.array([0.1, 0.2, 0.0]), margin).tolist() == [2.0, 1.0, inf]
+    assert compute_losses(np.array([0.0, 1.0, 0.0]), error).tolist() == [1.0, inf, 1.0]
+    assert compute_losses(np.full(2, np.nan), error).tolist() == [inf, inf]
 
 
 @pytest.mark.parametrize("toolkit", [VISE, Plate(pitch=20, peg_radius=3, columns=6, rows=5, clamps=2)])
@@ -242,7 +244,7 @@ def test_a_plan_is_made_of_all_fixtures_whatever_a_list_would_show(toolkit: Tool
     every = answer(
         asked(part, toolkit, **({"listing": "all"} if toolkit.travels > 1 else {}))[0].query, threads=1
     )
-    member = family_of(asked(part, toolkit, best=1), threads=1).members[0]
+    member = make_family(asked(part, toolkit, best=1), threads=1).members[0]
     assert member.fixtures == len(every) > 1
 
 
@@ -250,7 +252,7 @@ def test_unfit_fixtures_are_used_when_asked_for() -> None:
     result = answer(asked(TWENTY[:1], Vise(pitch=10, columns=2, peg_radius=3))[0].query, threads=1)
     bad = unfit(result.table.quality, result.query.tolerance)
     assert bad.any()
-    with_all, usual = member_of("a", result, unfit=True), member_of("a", result)
+    with_all, usual = make_member("a", result, unfit=True), make_member("a", result)
     assert len(with_all.words) > len(usual.words)
     assert not unfit(usual.table.quality, result.query.tolerance).any()
     assert with_all.fixtures == usual.fixtures == len(result)
@@ -263,27 +265,27 @@ def test_the_best_that_a_part_has_is_none_that_is_unfit() -> None:
     quality[np.argmin(quality[:, LOCATION_ERROR]), CLOSURE_MARGIN] = 1e-6
     changed = evolve(result, table=evolve(result.table, quality=quality))
     fit = ~unfit(quality, result.query.tolerance)
-    table, _ = with_half_turns(changed.table.take(np.flatnonzero(fit)), result.query)
-    member = member_of("a", changed)
+    table, _ = add_half_turns(changed.table.take(np.flatnonzero(fit)), result.query)
+    member = make_member("a", changed)
     assert member.best == pytest.approx(EffectiveErrors.of(result.query).errors(table).min(), abs=1e-12)
     assert member.loss.min() == 1.0
-    assert member_of("a", changed, unfit=True).best < member.best
+    assert make_member("a", changed, unfit=True).best < member.best
 
 
 def test_many_fixtures_are_kept_on_the_disk(monkeypatch: pytest.MonkeyPatch) -> None:
     from workhold.family import members as module
 
     result = answer(asked(TWENTY[:1], VISE)[0].query, threads=1)
-    kept = member_of("a", result)
+    kept = make_member("a", result)
     monkeypatch.setattr(module, "IN_MEMORY", 0)
-    spilled = member_of("a", result)
+    spilled = make_member("a", result)
     assert spilled.table == kept.table and (spilled.words == kept.words).all()
 
 
 @pytest.mark.thorough
 def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
-    text = family_text(twenty)
-    assert text == family_text(family_of(asked(TWENTY, WIDE), threads=2))
+    text = write_family_json(twenty)
+    assert text == write_family_json(make_family(asked(TWENTY, WIDE), threads=2))
     data = json.loads(text)
     assert data["format"] == "workhold-family/1"
     family = data["family"]
@@ -311,13 +313,13 @@ def test_the_file_is_what_the_contract_says(twenty: Family) -> None:
 @pytest.mark.thorough
 def test_pegs_of_a_part_that_stand_elsewhere_and_its_zero_are_told(twenty: Family) -> None:
     """A largest opening, or a smallest gap, may ask for other columns than those of the set-up."""
-    from workhold.family.family import holding_entry
+    from workhold.family.family import make_holding_entry
 
     one = twenty.plans[0].setups[0].holdings[0]
-    assert "pegs" not in holding_entry(one, WIDE, 0)
-    told = holding_entry(evolve(one, in_place=False), WIDE, 0)
+    assert "pegs" not in make_holding_entry(one, WIDE, 0)
+    told = make_holding_entry(evolve(one, in_place=False), WIDE, 0)
     elsewhere = evolve(one.member, zero=evolve(one.member.zero, point=(3.0, 4.0)))
-    zero = holding_entry(evolve(one, member=elsewhere), WIDE, 0)["zero"]
+    zero = make_holding_entry(evolve(one, member=elsewhere), WIDE, 0)["zero"]
     assert zero == pytest.approx(one.fixture.pose.apply(3.0, 4.0), abs=1e-8)
     assert told["pegs"] == [{"jaw": p.carrier, "column": p.column, "row": p.row} for p in one.fixture.pegs]
 
@@ -332,7 +334,7 @@ def test_one_and_its_half_turn_are_one_pattern() -> None:
         if split == 2:
             forms.append((sorted(-r for r in rows[split:]), sorted(-r for r in rows[:split])))
         names.add(min(str([[r - min(*a, *b) for r in some] for some in (a, b)]) for a, b in forms))
-    assert member_of("a", result, unfit=True).patterns == len(names)
+    assert make_member("a", result, unfit=True).patterns == len(names)
 
 
 def test_numbers_of_plans(twenty: Family) -> None:
@@ -365,4 +367,4 @@ FENCE = Fence(pitch=20, peg_radius=3, wall_offset=8)
 )
 def test_a_peg_is_written_by_its_carrier(toolkit: Toolkit, carrier: str, written: str) -> None:
     """The ends of a wall have the role of locators, and a clamp its line, and its hole where that is known."""
-    assert json.dumps(peg_entry(Peg(carrier, 4, 1, 0.0, 0.0, 0, 1.0), toolkit)) == written
+    assert json.dumps(make_peg_entry(Peg(carrier, 4, 1, 0.0, 0.0, 0, 1.0), toolkit)) == written

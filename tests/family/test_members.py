@@ -7,9 +7,9 @@ import pytest
 
 from family_parts import shop_parts
 from workhold import InputError, Load, Plate, Query, Restrictions, Vise, Workpiece, answer, circle_zone
-from workhold.family.family import Asked, family_of
-from workhold.family.members import RANKINGS, other_side, zero_of_other_side
-from workhold.family.patterns import holes_of
+from workhold.family.family import Asked, make_family
+from workhold.family.members import RANKINGS, make_other_side_query, mirror_zero
+from workhold.family.patterns import list_holes
 from workhold.model.quality import LOAD_REACTION, LOCATION_ERROR
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.solid import SolidOutline
@@ -42,7 +42,7 @@ def lever_query(restrictions: Restrictions) -> Query:
 )
 def test_the_other_side_has_the_mirrored_fixtures(restrictions: Restrictions) -> None:
     query = lever_query(restrictions)
-    one, other = answer(query, threads=1), answer(other_side(query), threads=1)
+    one, other = answer(query, threads=1), answer(make_other_side_query(query), threads=1)
     free = answer(lever_query(Restrictions()), threads=1)
     assert len(one) == len(other) > 0 and (len(one) < len(free)) == bool(restrictions)
     # Half a turn of everything chooses among two forms of one fixture, with a location error each: type I is left out.
@@ -66,13 +66,13 @@ def test_turned_over_twice_it_is_as_before() -> None:
     query = lever_query(
         Restrictions(avoid=(1, 6), zones=[circle_zone(70.0, 11.0, 5.0)], angles=[(-10.0, 30.0)])
     )
-    again = other_side(other_side(query))
+    again = make_other_side_query(make_other_side_query(query))
     assert [loop.tolist() for loop in again.workpiece.loops] == [loop.tolist() for loop in LEVER.loops]
     assert again.restrictions.avoid == query.restrictions.avoid and again.restrictions.angles == (
         (-10.0, 30.0),
     )
     assert again.loads == query.loads
-    turned = other_side(query)
+    turned = make_other_side_query(query)
     before, after = ({face.number: face.segment for face in part.faces} for part in (LEVER, turned.workpiece))
     for number, image in zip(query.restrictions.avoid, reversed(turned.restrictions.avoid), strict=True):
         x, y = before[number].at(0.0)
@@ -81,13 +81,13 @@ def test_turned_over_twice_it_is_as_before() -> None:
 
 def test_the_zero_is_the_same_point_of_the_part() -> None:
     zero = part_zero(LEVER, "hole 1")
-    other = zero_of_other_side(zero)
+    other = mirror_zero(zero)
     assert other == PartZero((-zero.point[0], zero.point[1]), zero.words)
-    turned = Asked("lever", lever_query(Restrictions())).lying_as(None)
+    turned = Asked("lever", lever_query(Restrictions())).turn_over(None)
     assert turned.zero == PartZero((0.0, 0.0), "origin of the drawing")
-    assert turned.zero.point == pytest.approx(zero_of_other_side(part_zero(LEVER)).point)
+    assert turned.zero.point == pytest.approx(mirror_zero(part_zero(LEVER)).point)
     assert turned.name == "lever, side 2"
-    assert Asked("lever", lever_query(Restrictions()), zero=zero).lying_as(None).zero == other
+    assert Asked("lever", lever_query(Restrictions()), zero=zero).turn_over(None).zero == other
 
 
 def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
@@ -105,13 +105,13 @@ def test_the_other_side_of_a_solid_is_that_which_is_read() -> None:
     )
     asked = Restrictions(avoid=(2, 3), zones=[circle_zone(70.0, 11.0, 5.0)])
     query = Query(part, toolkit, restrictions=asked, rank_by=RANKINGS[1])
-    side = Asked("part", query, zero=part_zero(part, "corner")).lying_as(other)
+    side = Asked("part", query, zero=part_zero(part, "corner")).turn_over(other)
     assert (side.name, side.query.workpiece.name) == ("part, side 2", "part, side 2")
     assert side.query.workpiece.solid == turned and side.query.restrictions.avoid == (1, 2)
     assert side.query.restrictions.zones[0].loop[:, 0].min() == pytest.approx(-75.0)
     assert side.zero is not None and side.zero.point == (0.0, 0.0)
     with pytest.raises(InputError, match="give both sides as parts of their own"):
-        other_side(query)
+        make_other_side_query(query)
 
 
 def test_both_sides_share_pins() -> None:
@@ -119,7 +119,7 @@ def test_both_sides_share_pins() -> None:
         Asked(p.name, Query(p, Vise(pitch=10, columns=2, peg_radius=3), rank_by=RANKINGS[1]))
         for p in shop_parts(2)
     ]
-    family = family_of([side for one in parts for side in (one, one.lying_as(None))], threads=1)
+    family = make_family([side for one in parts for side in (one, one.turn_over(None))], threads=1)
     assert [one.name for one in family.members] == [
         "ell-1",
         "ell-1, side 2",
@@ -146,7 +146,7 @@ def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
         for w in (60.0, 63.0, 71.5, 84.0)
     ]
     asked = [Asked(part.name, Query(part, toolkit, rank_by=ranking)) for part in parts]
-    free, strict = family_of(asked, threads=1), family_of(asked, same_zero=True, threads=1)
+    free, strict = make_family(asked, threads=1), make_family(asked, same_zero=True, threads=1)
     assert len(strict.members) == 4
     for plan in strict.plans:
         for setup in plan.setups:
@@ -154,7 +154,7 @@ def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
             turns = [one.fixture.pose.theta_deg for one in setup.holdings]
             assert np.ptp(np.array(places), axis=0) == pytest.approx([0.0, 0.0], abs=2e-3)
             assert np.ptp(turns) == pytest.approx(0.0, abs=2e-4)
-            assert len({tuple(holes_of(one.row, toolkit)) for one in setup.holdings}) == 1
+            assert len({tuple(list_holes(one.row, toolkit)) for one in setup.holdings}) == 1
         best = min(point.loss for point in free.points if point.setups <= plan.point.setups)
         assert best <= plan.point.loss
     assert len(strict.plans[-1].setups) >= len(free.plans[-1].setups)
@@ -166,20 +166,20 @@ def test_with_the_same_zero_a_set_up_has_one(toolkit: Plate | Vise) -> None:
 def test_rounding_does_not_part_what_is_at_one_place() -> None:
     from attrs import evolve
 
-    from workhold.family.patterns import zero_words
+    from workhold.family.patterns import encode_zeros
 
     result = answer(Query(shop_parts(1)[0], Vise(pitch=10, columns=1, peg_radius=3)), threads=1)
     table, zero = result.table, PartZero((3.0, 4.0), "")
-    words = zero_words(table, result.toolkit, zero)
+    words = encode_zeros(table, result.toolkit, zero)
     for hair in (1e-9, -1e-9):
         near = evolve(table, position=table.position + hair, theta=np.abs(table.theta + hair * 1e-3))
-        assert (zero_words(near, result.toolkit, zero) == words).mean() > 0.999
-    assert (zero_words(evolve(table, position=table.position + 0.002), result.toolkit, zero) != words)[
+        assert (encode_zeros(near, result.toolkit, zero) == words).mean() > 0.999
+    assert (encode_zeros(evolve(table, position=table.position + 0.002), result.toolkit, zero) != words)[
         :, :2
     ].all()
     whole = evolve(table, theta=np.full(len(table), 2 * np.pi - 1e-12))
     none = evolve(table, theta=np.zeros(len(table)))
-    assert (zero_words(whole, result.toolkit, zero) == zero_words(none, result.toolkit, zero)).all()
+    assert (encode_zeros(whole, result.toolkit, zero) == encode_zeros(none, result.toolkit, zero)).all()
     # Where the pegs stand is of no account, only where the part lies from them.
     lifted = evolve(table, row=table.row + 3, position=table.position + np.array([0.0, 30.0]))
-    assert (zero_words(lifted, result.toolkit, zero) == words).all()
+    assert (encode_zeros(lifted, result.toolkit, zero) == words).all()

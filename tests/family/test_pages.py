@@ -12,10 +12,10 @@ from svg_reading import by_class, texts
 from family_parts import shop_parts
 from own_heights import STEM, stepped
 from workhold import Plate, Query, Vise
-from workhold.drawing.pdf import svg_to_pdf
-from workhold.family.family import Asked, Family, family_of
-from workhold.family.members import RANKINGS, loss_text
-from workhold.family.pages import draw_curve, draw_setups, grid, holes_of, moves_words
+from workhold.drawing.pdf import convert_svg_to_pdf
+from workhold.family.family import Asked, Family, make_family
+from workhold.family.members import RANKINGS, format_loss
+from workhold.family.pages import describe_moves, draw_curve, draw_setups, list_holes, make_grid
 from workhold.family.plan import Plan
 from workhold.geometry.segment import Box
 from workhold.units import INCH, MILLIMETRE, Unit
@@ -28,7 +28,7 @@ DAY = date(2026, 3, 31)
 def family_in(toolkit: Vise | Plate, count: int) -> Family:
     """A family of so many parts."""
     ranking = RANKINGS[toolkit.travels]
-    return family_of(
+    return make_family(
         [Asked(part.name, Query(part, toolkit, rank_by=ranking)) for part in shop_parts(count)], threads=1
     )
 
@@ -67,15 +67,15 @@ def test_sheets_tell_every_part_of_every_set_up(
             assert not collisions(page) and on_page(page)
             assert f"Set-up {number} of {len(plan.setups)}:" in texts(page)[0]
             words += texts(page)
-        for hole in holes_of(setup):
+        for hole in list_holes(setup):
             assert any(hole in word for word in words)
         for one in setup.holdings:
             # In its cell and in its table.
             assert words.count(one.member.name) == 2
             assert f"{one.fixture.pose.written_deg:z.4f}°" in words
-            assert loss_text(one.loss) in words
+            assert format_loss(one.loss) in words
     assert next(shown, None) is None
-    assert svg_to_pdf(pages, DAY)
+    assert convert_svg_to_pdf(pages, DAY)
     assert pages == draw_setups(plan, family.figure, DAY, unit)
 
 
@@ -129,13 +129,13 @@ def test_a_name_with_room_is_told_in_full(families: dict[str, Family]) -> None:
 
 def test_what_is_moved_is_told(families: dict[str, Family]) -> None:
     plan = next(plan for plan in families["vise"].plans if len(plan.setups) > 2)
-    assert list(moves_words(plan.setups[0], None)) == []
+    assert list(describe_moves(plan.setups[0], None)) == []
     before, after = plan.setups[:2]
-    (words,) = moves_words(after, before)
+    (words,) = describe_moves(after, before)
     placed = words.partition("place ")[2].partition(";")[0].split(", ")
     assert len(placed) == after.moved
-    assert set(placed) <= set(holes_of(after)) and not set(placed) & set(holes_of(before))
-    assert list(moves_words(before, before)) == ["After the set-up before: all pegs stay."]
+    assert set(placed) <= set(list_holes(after)) and not set(placed) & set(list_holes(before))
+    assert list(describe_moves(before, before)) == ["After the set-up before: all pegs stay."]
 
 
 def test_pegs_in_other_columns_are_named(families: dict[str, Family]) -> None:
@@ -158,7 +158,7 @@ def test_pegs_in_other_columns_are_named(families: dict[str, Family]) -> None:
 @pytest.mark.parametrize("count", range(1, 25))
 def test_cells_fill_their_room_without_overlap(count: int) -> None:
     room = Box(0.0, 0.0, 650.0, 400.0)
-    cells = grid(count, room)
+    cells = make_grid(count, room)
     assert len(cells) == count
     assert all(room.grown(1e-9).contains(cell) for cell in cells)
     assert all(a.overlap(b) == 0 for k, a in enumerate(cells) for b in cells[:k])
@@ -175,8 +175,8 @@ def test_the_curve_has_a_point_for_each_number_of_set_ups(families: dict[str, Fa
         x, y = ([float(element.attrib[key]) for element in circles] for key in ("cx", "cy"))
         assert x == sorted(x) and y == sorted(y)
         assert [element.attrib["fill"] == "#b3122a" for element in circles].index(True) == 1
-        assert loss_text(chosen.loss) in texts(svg)
-        assert svg_to_pdf([svg], DAY)
+        assert format_loss(chosen.loss) in texts(svg)
+        assert convert_svg_to_pdf([svg], DAY)
 
 
 def test_what_is_not_proven_is_told_in_the_curve(families: dict[str, Family]) -> None:
@@ -197,7 +197,7 @@ def test_heights_of_their_own_are_told_where_solids_are_held() -> None:
     solid, prism = stepped({"clamp": ((12.7, 25.4), STEM)}), shop_parts(1)[0]
     for parts, said in (([solid], True), ([prism], False), ([solid, prism], True)):
         asked = [Asked(part.name, Query(part, toolkit, rank_by=RANKINGS[1])) for part in parts]
-        family = family_of(asked, threads=1)
+        family = make_family(asked, threads=1)
         plan = family.plans[0]
         pages = draw_setups(plan, family.figure, DAY, INCH)
         for page in pages:

@@ -10,7 +10,14 @@ from attrs import evolve
 
 from family_parts import shop_parts
 from workhold import Fence, OpeningVise, Plate, Query, Result, Vise, Workpiece, answer
-from workhold.family.patterns import half_turn, holes_of, moved_onto, pattern_words, shifted, turned
+from workhold.family.patterns import (
+    encode_patterns,
+    list_holes,
+    map_carriers_by_half_turn,
+    move_onto_pattern,
+    shift_fixture,
+    turn_fixtures_over,
+)
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import make_fixture_of_row
 from workhold.verification import Judge
@@ -46,7 +53,7 @@ def naive(result: Result, row: int) -> tuple[object, ...]:
     fixture, toolkit = result[row], result.toolkit
     places = []
     for peg in fixture.pegs:
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         if carrier.is_wall:
             continue
         along = carrier.on is not None and not carrier.has_a_hole
@@ -71,7 +78,7 @@ def test_words_are_the_same_where_patterns_are(results: dict[str, Result], name:
     result = results[name]
     count = min(len(result), 400)
     assert count > 0
-    words = pattern_words(result.table.take(slice(0, count)), result.toolkit)
+    words = encode_patterns(result.table.take(slice(0, count)), result.toolkit)
     told = [naive(result, row) for row in range(count)]
     by_words, by_pattern = defaultdict[bytes, set[object]](set), defaultdict[object, set[bytes]](set)
     for row, pattern in enumerate(told):
@@ -86,11 +93,11 @@ def test_a_shifted_fixture_is_one_of_the_same_pattern(results: dict[str, Result]
     toolkit, one = result.toolkit, result.table.take(slice(0, 1))
     rows = 0 if toolkit.wall is not None else 2
     columns = {} if isinstance(toolkit, Vise) else {0: 3}
-    moved = shifted(one, toolkit, columns, rows)
-    assert (pattern_words(moved, toolkit) == pattern_words(one, toolkit)).all()
-    back = moved_onto(moved, one, toolkit)
+    moved = shift_fixture(one, toolkit, columns, rows)
+    assert (encode_patterns(moved, toolkit) == encode_patterns(one, toolkit)).all()
+    back = move_onto_pattern(moved, one, toolkit)
     assert back is not None
-    assert holes_of(back, toolkit) == holes_of(one, toolkit)
+    assert list_holes(back, toolkit) == list_holes(one, toolkit)
     for mine, theirs in ((back.position, one.position), (back.jaw_separation, one.jaw_separation)):
         assert mine == pytest.approx(theirs, abs=1e-9)
     # Where everything lies after the move is where it lay, moved.
@@ -108,12 +115,14 @@ def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(
 ) -> None:
     result = results[name]
     toolkit = result.toolkit
-    kind = next(k for k in range(len(toolkit.arrangements)) if half_turn(toolkit, k) is not None)
+    kind = next(
+        k for k in range(len(toolkit.arrangements)) if map_carriers_by_half_turn(toolkit, k) is not None
+    )
     rows = np.flatnonzero(result.table.arrangement == kind)[:40]
     assert len(rows)
     table = result.table.take(rows)
-    after = turned(table, toolkit)
-    again = turned(after, toolkit)
+    after = turn_fixtures_over(table, toolkit)
+    again = turn_fixtures_over(after, toolkit)
     assert (
         (again.column == table.column).all()
         and (again.row == table.row).all()
@@ -133,13 +142,18 @@ def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(
 
 def test_types_that_a_half_turn_changes_have_none() -> None:
     vise = Vise(pitch=10, columns=2, peg_radius=3)
-    assert [half_turn(vise, number) for number in (0, 1)] == [(1, 0), None]
+    assert [map_carriers_by_half_turn(vise, number) for number in (0, 1)] == [(1, 0), None]
     plate = Plate(pitch=20, peg_radius=3, clamps=2, directions=[("-x", "+x"), ("-x", "-y"), ("-x", "-x")])
-    turns = {one.direction: half_turn(plate, k) is not None for k, one in enumerate(plate.arrangements)}
+    turns = {
+        one.direction: map_carriers_by_half_turn(plate, k) is not None
+        for k, one in enumerate(plate.arrangements)
+    }
     assert turns == {"-x -x": False, "-x +x": True, "-x -y": False}
-    assert half_turn(Plate(pitch=20, peg_radius=3), 0) is None
+    assert map_carriers_by_half_turn(Plate(pitch=20, peg_radius=3), 0) is None
     assert (
-        half_turn(Fence(pitch=20, peg_radius=3, wall_offset=9, clamps=2, directions=[("-x", "+x")]), 0)
+        map_carriers_by_half_turn(
+            Fence(pitch=20, peg_radius=3, wall_offset=9, clamps=2, directions=[("-x", "+x")]), 0
+        )
         is None
     )
 
@@ -148,8 +162,8 @@ def test_jaws_that_would_stand_too_near_are_not_moved_on(results: dict[str, Resu
     result = results["vise"]
     one = result.table.take(slice(0, 1))
     vise = Vise(pitch=10, columns=9, peg_radius=3, min_gap=float(one.jaw_separation[0]) - 15)
-    outward = [shifted(one, vise, {0: 4, 1: 4 + steps}, 0) for steps in (0, 1, 2)]
-    back = [moved_onto(one, target, vise) for target in outward]
+    outward = [shift_fixture(one, vise, {0: 4, 1: 4 + steps}, 0) for steps in (0, 1, 2)]
+    back = [move_onto_pattern(one, target, vise) for target in outward]
     assert [row is not None for row in back] == [True, True, False]
     assert back[1] is not None
     assert float(back[1].jaw_separation[0]) == pytest.approx(float(one.jaw_separation[0]) - 10)

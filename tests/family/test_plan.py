@@ -10,7 +10,7 @@ import pytest
 from workhold import Fence, Plate, Vise
 from workhold.family import plan as module
 from workhold.family.patterns import NOTHING, Hole
-from workhold.family.plan import Freedom, best_order, freedom_of, nearest
+from workhold.family.plan import Freedom, find_best_order, find_cheapest_move, find_freedom
 
 
 def random_holes(random: Random) -> list[Hole]:
@@ -38,7 +38,7 @@ def fewest_moved(one: list[Hole], other: list[Hole], freedom: Freedom) -> int:
 def test_no_other_order_moves_fewer(seed: int, freedom: Freedom) -> None:
     random = Random(seed)
     setups = [random_holes(random) for _ in range(5)]
-    steps = best_order(setups, freedom)
+    steps = find_best_order(setups, freedom)
     assert sorted(step.setup for step in steps) == list(range(5))
     least = min(
         sum(fewest_moved(setups[a], setups[b], freedom) for a, b in pairwise(order))
@@ -52,7 +52,7 @@ def test_no_other_order_moves_fewer(seed: int, freedom: Freedom) -> None:
 def test_what_is_told_to_be_moved_is_what_does_not_stand_yet(seed: int) -> None:
     random = Random(seed)
     setups = [[(c, x + 5, y + 7) for c, x, y in random_holes(random)] for _ in range(6)]
-    steps = best_order(setups, Freedom(True, True))
+    steps = find_best_order(setups, Freedom(True, True))
     stood = [[(c, x + step.columns, y + step.rows) for c, x, y in setups[step.setup]] for step in steps]
     for step, before, after in zip(steps[1:], stood, stood[1:], strict=False):
         for hole in before:
@@ -65,7 +65,7 @@ def test_what_is_told_to_be_moved_is_what_does_not_stand_yet(seed: int) -> None:
 
 def test_what_tells_nothing_stays() -> None:
     clamp = (1, NOTHING, 2)
-    pegs, columns, rows = nearest(
+    pegs, columns, rows = find_cheapest_move(
         [(0, 0, 0), (0, 1, 0), clamp], [(0, 3, 1), (0, 4, 1), (1, NOTHING, 3)], Freedom(True, True)
     )
     assert (pegs, columns, rows) == (0, -3, -1)
@@ -74,9 +74,9 @@ def test_what_tells_nothing_stays() -> None:
 def test_beyond_what_is_tried_the_way_goes_to_the_nearest(monkeypatch: pytest.MonkeyPatch) -> None:
     random = Random(4)
     setups = [random_holes(random) for _ in range(6)]
-    exact = sum(step.moved for step in best_order(setups, Freedom(False, True))[1:])
+    exact = sum(step.moved for step in find_best_order(setups, Freedom(False, True))[1:])
     monkeypatch.setattr(module, "MOST_EXACT", 3)
-    steps = best_order(setups, Freedom(False, True))
+    steps = find_best_order(setups, Freedom(False, True))
     assert sorted(step.setup for step in steps) == list(range(6))
     assert sum(step.moved for step in steps[1:]) >= exact
 
@@ -95,4 +95,4 @@ def test_beyond_what_is_tried_the_way_goes_to_the_nearest(monkeypatch: pytest.Mo
 def test_set_ups_move_where_the_toolkit_has_no_end(
     toolkit: Vise | Plate, expected: tuple[bool, bool]
 ) -> None:
-    assert freedom_of(toolkit) == Freedom(*expected)
+    assert find_freedom(toolkit) == Freedom(*expected)

@@ -31,7 +31,7 @@ from ezdxf.entities import LWPolyline
 from fuzzed import ALL_MAKERS
 from pytest import approx, raises
 
-from workhold.archive import mapped_archive
+from workhold.archive import map_archive
 from workhold.benchmark.matching import read_entry
 from workhold.cli.jobs import read_jobs
 from workhold.cli.main import app
@@ -41,7 +41,7 @@ from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
 from workhold.files.program.reader import read_program
 from workhold.files.program.tool_tables import read_tools
-from workhold.files.result.parts import HEAD, columns_said
+from workhold.files.result.parts import HEAD, describe_columns_from_head
 from workhold.files.result.reader import read_result
 from workhold.files.supports_file import read_supports
 from workhold.files.toolkit_file import read_toolkit_file
@@ -103,7 +103,7 @@ def check_columns(path: Path) -> None:
             # Checksums are compared by what verifies a file, and names told twice only once.
             if "CRC" in str(error):
                 with raises(InputError):
-                    mapped_archive(path, columns_said, HEAD, whole=True)
+                    map_archive(path, describe_columns_from_head, HEAD, whole=True)
             return
         assert len(read) == len(told["theta"])
         for k, fixture in enumerate(read):

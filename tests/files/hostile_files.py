@@ -19,10 +19,10 @@ import ezdxf
 import numpy as np
 
 from fakes import fake_result
-from workhold.archive import mapped_archive
+from workhold.archive import map_archive
 from workhold.files.result.columns import write_columns
-from workhold.files.result.parts import HEAD, columns_of
-from workhold.files.result.writer import result_text
+from workhold.files.result.parts import HEAD, describe_columns
+from workhold.files.result.writer import write_result_text
 
 __all__ = ["MAKERS"]
 
@@ -158,7 +158,7 @@ def part(chance: random.Random) -> bytes:
 
 def result(chance: random.Random) -> bytes:
     """A result of two fixtures."""
-    return as_json(upset(json.loads("".join(result_text(fake_result(2)))), chance), chance)
+    return as_json(upset(json.loads("".join(write_result_text(fake_result(2)))), chance), chance)
 
 
 def vise(chance: random.Random) -> bytes:
@@ -304,7 +304,7 @@ def written_columns() -> tuple[str, dict[str, Any]]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "result.npz"
         write_columns(fake_result(2), path)
-        text, arrays = mapped_archive(path, columns_of(1), HEAD)
+        text, arrays = map_archive(path, describe_columns(1), HEAD)
         return text, {name: np.array(array) for name, array in arrays.items()}
 
 

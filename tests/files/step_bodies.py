@@ -21,7 +21,7 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool
 
-from workhold.files.step.library import bounding_box
+from workhold.files.step.library import compute_bounding_box
 from workhold.model.bodies import COLOURS, BodyKind
 
 
@@ -62,7 +62,7 @@ def volume(shape: Any) -> float:
 def assert_apart(bodies: list[tuple[str, str, Any]]) -> None:
     """No two bodies of an assembly have a volume in common."""
     for (name, _, one), (other_name, _, other) in combinations(bodies, 2):
-        (low, high), (least, most) = bounding_box(one), bounding_box(other)
+        (low, high), (least, most) = compute_bounding_box(one), compute_bounding_box(other)
         if all(low[k] < most[k] and least[k] < high[k] for k in range(3)):
             common = volume(BRepAlgoAPI_Common(one, other).Shape())
             assert abs(common) < 1e-6, (name, other_name, common)

@@ -17,7 +17,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder, BRepP
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 
-from workhold.files.step.library import bounding_box, load_step_library, sub_shapes
+from workhold.files.step.library import compute_bounding_box, list_sub_shapes, load_step_library
 
 
 def box(x: float, y: float, z: float, at: Sequence[float] = (0, 0, 0)) -> Any:
@@ -49,8 +49,8 @@ def fused(shape: Any, *others: Any) -> Any:
 def edges_where(shape: Any, wanted: Any) -> list[Any]:
     """Edges, each once, whose bounding box corners (low, high) fulfil a condition."""
     found: list[Any] = []
-    for edge in sub_shapes(shape, "EDGE"):
-        if wanted(*bounding_box(edge)) and not any(edge.IsSame(other) for other in found):
+    for edge in list_sub_shapes(shape, "EDGE"):
+        if wanted(*compute_bounding_box(edge)) and not any(edge.IsSame(other) for other in found):
             found.append(edge)
     return found
 

@@ -26,7 +26,7 @@ import os, signal, sys, time
 from pathlib import Path
 from workhold.errors import InputError
 def prepare(): pass
-def plain(content, **options):
+def read_as_plain_data(content, **options):
     if content == b"crash": os.kill(os.getpid(), signal.SIGSEGV)
     if content == b"loop":
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
@@ -104,7 +104,7 @@ def test_one_that_waits_for_ever_is_ended(work: str, tmp_path: Path, monkeypatch
 def test_to_prepare_takes_its_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock of the reading starts behind it; what is refused while it prepares is told."""
     (tmp_path / "slow_work.py").write_text(
-        "import time\nprepare = lambda: time.sleep(2)\nplain = lambda content: 1\n"
+        "import time\nprepare = lambda: time.sleep(2)\nread_as_plain_data = lambda content: 1\n"
     )
     wanting = "from workhold.errors import InputError\ndef prepare(): raise InputError('it is missing.')\n"
     (tmp_path / "wanting_work.py").write_text(wanting)

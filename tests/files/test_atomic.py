@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from workhold.errors import InputError
-from workhold.files.atomic import refuse_unwritable, refuse_unwritable_folder, text_file, write_bytes
+from workhold.files.atomic import refuse_unwritable, refuse_unwritable_folder, write_bytes, write_text_file
 
 
 def test_text_replaces_the_earlier_file_at_the_end(tmp_path: Path) -> None:
     path = tmp_path / "a.txt"
     path.write_text("old")
-    with text_file(path) as stream:
+    with write_text_file(path) as stream:
         stream.write("nëw\n")
         stream.flush()
         assert path.read_text() == "old"
@@ -28,7 +28,7 @@ def test_text_replaces_the_earlier_file_at_the_end(tmp_path: Path) -> None:
 def test_any_error_leaves_the_earlier_file_and_nothing_else(tmp_path: Path, error: BaseException) -> None:
     path = tmp_path / "a.txt"
     path.write_text("old")
-    with pytest.raises(type(error)), text_file(path) as stream:
+    with pytest.raises(type(error)), write_text_file(path) as stream:
         stream.write("new")
         raise error
     assert path.read_text() == "old"
@@ -36,7 +36,7 @@ def test_any_error_leaves_the_earlier_file_and_nothing_else(tmp_path: Path, erro
 
 
 def test_a_mistake_of_the_program_is_not_blamed_on_the_user(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="mistake") as caught, text_file(tmp_path / "a.txt"):
+    with pytest.raises(ValueError, match="mistake") as caught, write_text_file(tmp_path / "a.txt"):
         raise ValueError("mistake")
     assert not isinstance(caught.value, InputError)
 
@@ -44,7 +44,7 @@ def test_a_mistake_of_the_program_is_not_blamed_on_the_user(tmp_path: Path) -> N
 def test_a_full_disk_is_told_in_a_sentence(tmp_path: Path) -> None:
     with (
         pytest.raises(InputError, match=r"a\.txt cannot be written: No space left"),
-        text_file(tmp_path / "a.txt"),
+        write_text_file(tmp_path / "a.txt"),
     ):
         raise OSError(28, "No space left on device")
     assert list(tmp_path.iterdir()) == []

@@ -34,13 +34,13 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 def test_elements_that_lie_inside_each_other_are_counted_and_those_beside_are_not() -> None:
     budget = Budget(SMALL)
     for _ in range(5):
-        with budget.nested("an element"), budget.nested("an element"):
+        with budget.count_nesting("an element"), budget.count_nesting("an element"):
             pass
     with ExitStack() as inside:
-        inside.enter_context(budget.nested("an element"))
-        inside.enter_context(budget.nested("an element"))
+        inside.enter_context(budget.count_nesting("an element"))
+        inside.enter_context(budget.count_nesting("an element"))
         with pytest.raises(InputError, match="an element is nested more than 2 levels deep"):
-            inside.enter_context(budget.nested("an element"))
+            inside.enter_context(budget.count_nesting("an element"))
     # What was refused is left, too.
     assert budget.depth == 0
 
@@ -62,13 +62,13 @@ def test_the_clock_is_looked_at_now_and_then_however_many_steps_are_counted_at_o
 ) -> None:
     budget = Budget(SMALL)
     for _ in range(10_000 // size):
-        budget.work(size)
+        budget.count_steps(size)
     # And once at the start.
     assert 2 <= clock.looks <= 1 + 10_000 // Budget.PERIOD
     clock.now = 20.0
     with pytest.raises(InputError, match="given up after"):
         for _ in range(256):
-            budget.work()
+            budget.count_steps()
 
 
 def test_elements_take_time_too(clock: Clock) -> None:
@@ -84,7 +84,7 @@ def test_what_has_no_limits_is_never_refused(clock: Clock) -> None:
     budget.spend(10**9)
     with ExitStack() as inside:
         for _ in range(1000):
-            inside.enter_context(budget.nested("an element"))
+            inside.enter_context(budget.count_nesting("an element"))
 
 
 def test_an_error_that_is_its_own_cause_has_no_other_behind_it() -> None:

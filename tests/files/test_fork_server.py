@@ -132,5 +132,5 @@ def test_it_ends_with_its_starter_and_where_nobody_asks(is_closed: bool) -> None
 
 def test_one_that_never_starts_is_asked_twice_only() -> None:
     """Then each piece of work is started as where nothing can be forked."""
-    assert fork_server.forked("saying_where", [sys.executable, "-c", "pass"]) is None
+    assert fork_server.fork_from_server("saying_where", [sys.executable, "-c", "pass"]) is None
     assert fork_server.SERVERS == []

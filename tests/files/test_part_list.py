@@ -10,7 +10,7 @@ import pytest
 
 from workhold.errors import InputError
 from workhold.files import part_list as module
-from workhold.files.part_list import ListedPart, part_list, read_listed
+from workhold.files.part_list import ListedPart, list_parts, read_listed
 
 SQUARE = json.dumps(
     {"name": "square", "units": "mm", "loops": [[[0, 0, 0], [9, 0, 0], [9, 9, 0], [0, 9, 0]]]}
@@ -26,7 +26,7 @@ def folder_of(root: Path, *names: str) -> Path:
 
 
 def names_of(*given: str | Path, leave_out: tuple[Path, ...] = ()) -> list[str]:
-    return [part.name for part in part_list(given, leave_out)]
+    return [part.name for part in list_parts(given, leave_out)]
 
 
 def test_a_folder_is_its_drawings_in_the_order_people_count(tmp_path: Path) -> None:
@@ -47,7 +47,7 @@ def test_a_folder_is_its_drawings_in_the_order_people_count(tmp_path: Path) -> N
     assert names_of(folder) == [
         *("p1.svg", "p02.json", "P2.DXF", "p10.json", "p1000.svg", "p²².json", "a/b.step", "a/z.stp")
     ]
-    assert [part.path for part in part_list([folder])][-1] == tmp_path / "a" / "z.stp"
+    assert [part.path for part in list_parts([folder])][-1] == tmp_path / "a" / "z.stp"
 
 
 def test_files_and_names_stand_where_they_were_typed(tmp_path: Path) -> None:
@@ -80,7 +80,7 @@ def test_a_folder_that_nobody_may_read_is_refused(tmp_path: Path, monkeypatch: p
 
     monkeypatch.setattr(os, "scandir", refuse)
     with pytest.raises(InputError, match=r"cannot be read \(permission denied\)"):
-        part_list([tmp_path])
+        list_parts([tmp_path])
 
 
 def test_names_that_are_not_utf8_can_be_written(tmp_path: Path) -> None:
@@ -94,7 +94,7 @@ def test_what_is_no_file_is_a_row_that_costs_no_other(tmp_path: Path) -> None:
     (folder / "lost.json").symlink_to("nowhere")
     os.mkfifo(folder / "pipe.json")
     (folder / "under.dxf.json").mkdir()
-    said = {part.name: read_listed(part).refusal for part in part_list([folder])}
+    said = {part.name: read_listed(part).refusal for part in list_parts([folder])}
     link = "this is a link that leads to no file: give the file itself."
     pipe = "this is not a regular file: give a .json, .dxf, .svg or .step file."
     assert said == {
@@ -118,7 +118,7 @@ def test_an_inner_folder_that_nobody_may_read_costs_no_other(
 
     monkeypatch.setattr(os, "scandir", refuse)
     monkeypatch.setattr(os, "access", lambda path, _: path != folder / "closed")
-    parts = part_list([folder])
+    parts = list_parts([folder])
     assert [part.name for part in parts] == ["a.json", "closed", "open/c.json"]
     assert "cannot be looked into: allow reading it" in read_listed(parts[1]).refusal
 
@@ -131,7 +131,7 @@ def test_folders_may_lie_in_each_other_as_deep_as_the_disk_allows(tmp_path: Path
         nested[-1].mkdir()
     part = nested[-1] / "a.json"
     part.write_text(SQUARE)
-    assert [one.path for one in part_list([tmp_path])] == [part]
+    assert [one.path for one in list_parts([tmp_path])] == [part]
     # Removing them all at once would take as many calls within each other.
     part.unlink()
     for folder in reversed(nested[1:]):
@@ -158,19 +158,19 @@ def test_a_link_to_a_folder_above_is_no_circle(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["missing.dxf", "a\0b", "n" * 5000])
 def test_what_does_not_exist_is_refused(name: str) -> None:
     with pytest.raises(InputError, match="file not found, and no built-in part has that name"):
-        part_list(["widget", name])
+        list_parts(["widget", name])
 
 
 def test_a_folder_without_a_drawing_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"has no drawing in it: give a folder with \.dxf"):
-        part_list([tmp_path])
+        list_parts([tmp_path])
 
 
 def test_a_disk_is_no_list(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_PARTS", 2)
-    assert len(part_list([folder_of(tmp_path, "a.json", "b.json")])) == 2
+    assert len(list_parts([folder_of(tmp_path, "a.json", "b.json")])) == 2
     with pytest.raises(InputError, match="more than 2 parts"):
-        part_list([folder_of(tmp_path, "c.json")])
+        list_parts([folder_of(tmp_path, "c.json")])
 
 
 def test_a_part_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
@@ -180,7 +180,7 @@ def test_a_part_that_cannot_be_read_is_a_sentence(tmp_path: Path) -> None:
         ("odd.svg", b"<"),
     ):
         (tmp_path / name).write_bytes(content)
-        read = read_listed(part_list([tmp_path / name])[0])
+        read = read_listed(list_parts([tmp_path / name])[0])
         assert read.loaded is None
         assert read.refusal.startswith(f"{name}: ")
     gone = read_listed(ListedPart("gone", tmp_path / "gone.json"))
@@ -209,6 +209,6 @@ def test_a_fault_of_a_library_is_a_sentence_too(
 
 def test_reading_takes_its_options(tmp_path: Path) -> None:
     (tmp_path / "a.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H2V1H0Z"/></svg>')
-    read = read_listed(part_list([tmp_path])[0], unit="inch")
+    read = read_listed(list_parts([tmp_path])[0], unit="inch")
     assert read.loaded is not None
     assert read.loaded.workpiece.bounds[2] == pytest.approx(50.8)

@@ -16,7 +16,7 @@ from workhold.cli.main import app
 from workhold.cli.options import CALLED as ON_THE_COMMAND_LINE
 from workhold.files import questions
 from workhold.files.part.load import read_workpiece
-from workhold.files.questions import worded
+from workhold.files.questions import name_questions
 from workhold.web.part_tasks import CALLED as ON_THE_PAGE
 from workhold.web.part_tasks import Upload, read_part
 
@@ -60,7 +60,7 @@ def test_nothing_but_the_command_line_names_a_flag() -> None:
 def test_every_question_has_a_name(called: dict[str, str]) -> None:
     """No mark is left in a sentence, and no name is without a question."""
     assert {f"<{name}>" for name in called} == set(MARKS)
-    assert "<" not in worded(" ".join(MARKS), called)
+    assert "<" not in name_questions(" ".join(MARKS), called)
 
 
 def test_names_are_those_of_options_and_arguments() -> None:
@@ -71,7 +71,7 @@ def test_names_are_those_of_options_and_arguments() -> None:
         options = [name for name in ON_THE_COMMAND_LINE.values() if name.startswith("--")]
         assert len(options) == len(MARKS) - 1
         assert all(re.search(rf"  {name} ", text) for name in options)
-    assert {worded(mark, None) for mark in MARKS} < set(signature(load).parameters)
+    assert {name_questions(mark, None) for mark in MARKS} < set(signature(load).parameters)
 
 
 def test_one_remark_in_three_languages(tmp_path: Path) -> None:

@@ -186,7 +186,7 @@ def test_an_error_while_it_is_written_leaves_the_earlier_file(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("workhold.files.result.writer.fixture_lines", interrupted)
+    monkeypatch.setattr("workhold.files.result.writer.write_fixture_lines", interrupted)
     with pytest.raises(KeyboardInterrupt):
         workhold.save(result, path)
     assert path.read_bytes() == before

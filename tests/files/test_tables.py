@@ -11,7 +11,7 @@ from workhold.benchmark.matching import read_entry
 from workhold.cli.jobs import read_jobs
 from workhold.errors import InputError
 from workhold.files.budget import UNLIMITED, Budget, FileLimits
-from workhold.files.tables import MOST_COLUMNS, MOST_LETTERS, table_of
+from workhold.files.tables import MOST_COLUMNS, MOST_LETTERS, read_table
 
 HOSTILE = Path(__file__).parents[1] / "data" / "hostile"
 ROWS = [{"a": "1", "b": "x"}, {"a": "2", "b": "y, z"}]
@@ -21,7 +21,7 @@ CSV_LIMIT = 131_072
 
 def rows(text: str, remarks: str = "") -> list[dict[str, str]]:
     """The cells of each row."""
-    return [dict(row.cells) for row in table_of(text, Budget(UNLIMITED), remarks).rows()]
+    return [dict(row.cells) for row in read_table(text, Budget(UNLIMITED), remarks).iterate_rows()]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r", "\r\n", "\n\r", "\r\r\n"])
@@ -92,9 +92,9 @@ def test_the_largest_cell_and_row_are_read() -> None:
 def test_rows_are_taken_from_the_budget() -> None:
     """One after the other, so that a table of too many is not read to its end."""
     budget = Budget(FileLimits("a table", None, 2, "rows", remedy="split it"))
-    table = table_of("a\n1\n2\n3\n4\n", budget)
+    table = read_table("a\n1\n2\n3\n4\n", budget)
     with pytest.raises(InputError, match="more than the 2 rows that a table may have: split it"):
-        list(table.rows())
+        list(table.iterate_rows())
     assert budget.elements == 3
 
 

@@ -9,11 +9,11 @@ import pytest
 
 import workhold
 from workhold import Load, Tolerance, Vise, Workpiece, circle_zone
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError, make_printable, shorten_middle
 from workhold.files.budget import LIMITS, FileLimits
 from workhold.files.loads_file import read_loads
 from workhold.files.part.load import read_workpiece
-from workhold.files.text import json_value, read_at_most, read_limited, read_text, toml_table
+from workhold.files.text import parse_json, parse_toml, read_at_most, read_limited, read_text
 from workhold.files.toolkit_file import read_toolkit_file
 
 HUGE = "1" + "0" * 400
@@ -75,7 +75,7 @@ def test_numbers_beyond_all_floats_are_refused_from_python(make) -> None:  # typ
 def test_a_key_given_twice_is_refused(tmp_path: Path) -> None:
     """Python's reader would take the last, another program the first."""
     with pytest.raises(InputError, match='the key "units" is given twice'):
-        json_value('{"units": "mm", "units": "inch"}')
+        parse_json('{"units": "mm", "units": "inch"}')
     result = tmp_path / "r.json"
     result.write_text(
         '{"format": "workhold-result/1",\n"complete": true,\n"complete": false,\n"fixtures": [\n]}'
@@ -132,7 +132,7 @@ def test_what_is_no_utf8_is_told_by_its_line(tmp_path: Path) -> None:
 def test_whole_numbers_end_where_floats_do() -> None:
     """With 308 digits they are read, in JSON and in TOML, wherever they stand."""
     largest, over = "9" * 308, "1" + "0" * 308
-    assert json_value(largest) == toml_table(f"a = {largest}")["a"] == int(largest)
+    assert parse_json(largest) == parse_toml(f"a = {largest}")["a"] == int(largest)
     for text in (
         f"a = {over}",
         f"a = -{over}",
@@ -141,9 +141,9 @@ def test_whole_numbers_end_where_floats_do() -> None:
         f"[[a]]\nb = [[{over}]]",
     ):
         with pytest.raises(InputError, match="more than 308 digits"):
-            toml_table(text)
+            parse_toml(text)
     with pytest.raises(InputError, match="309 digits"):
-        json_value(f"[{over}]")
+        parse_json(f"[{over}]")
 
 
 def test_json_that_would_fill_the_memory_is_refused_before_it_is_read(
@@ -152,17 +152,17 @@ def test_json_that_would_fill_the_memory_is_refused_before_it_is_read(
     """Lists and objects count together; a file of which more is expected may hold more."""
     monkeypatch.setattr("workhold.files.text.MOST_BRACKETS", 6)
     monkeypatch.setattr("workhold.files.text.MOST_COMMAS", 8)
-    assert json_value("[[],[],{},{}]   ") == [[], [], {}, {}]
+    assert parse_json("[[],[],{},{}]   ") == [[], [], {}, {}]
     for text, words in (("[[],[],{},{},{},{}]", "lists and objects"), ("[1,1,1,1,1,1,1,1,1,1]", "values")):
         with pytest.raises(InputError, match=f"million {words}: save less in it"):
-            json_value(text)
-        assert json_value(text, times=2.0)
+            parse_json(text)
+        assert parse_json(text, times=2.0)
 
 
 @pytest.mark.parametrize("text", ["[" * 200_000, '{"a":' * 200_000])
 def test_json_that_is_nested_too_deeply_is_one_sentence(text: str) -> None:
     with pytest.raises(InputError, match="nested too deeply"):
-        json_value(text)
+        parse_json(text)
 
 
 @pytest.mark.parametrize(
@@ -171,18 +171,18 @@ def test_json_that_is_nested_too_deeply_is_one_sentence(text: str) -> None:
 def test_broken_toml_is_one_sentence(text: str) -> None:
     """Also where Python's reader raises something of its own."""
     with pytest.raises(InputError, match=r"^the file .*\.$"):
-        toml_table(text)
+        parse_toml(text)
 
 
 def test_what_is_shown_cannot_steer_a_terminal() -> None:
     """Escapes, C1 controls, line breaks and marks that turn the direction of writing; letters of any language stay."""
-    assert plain("\x1b[2J\x9b\u202e\u2066\ud800\x7f") == "?[2J?????"
-    assert plain("a\r\n\u2028b") == "a   b"
-    assert plain("Flansch Ø5 – 板") == "Flansch Ø5 – 板"
+    assert make_printable("\x1b[2J\x9b\u202e\u2066\ud800\x7f") == "?[2J?????"
+    assert make_printable("a\r\n\u2028b") == "a   b"
+    assert make_printable("Flansch Ø5 – 板") == "Flansch Ø5 – 板"
 
 
 def test_a_message_stays_short_whatever_it_quotes() -> None:
     """Beginning and end stay: the place and the remedy."""
     message = str(InputError("a" * 5000 + " is unknown: correct it."))
     assert len(message) == 1000 and message.startswith("aaa") and message.endswith(": correct it.")
-    assert shortened("short") == "short"
+    assert shorten_middle("short") == "short"

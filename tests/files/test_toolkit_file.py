@@ -12,8 +12,8 @@ import pytest
 
 from workhold import Plate, Tolerance, Vise
 from workhold.errors import InputError
-from workhold.files.input_forms import checked_toolkit
-from workhold.files.toolkit_file import dowel_series, dowel_size, load_toolkit, preset_names
+from workhold.files.input_forms import check_toolkit_entries
+from workhold.files.toolkit_file import find_dowel_size, list_preset_names, load_dowel_series, load_toolkit
 
 OWN: dict[str, Any] = {"unit": '"mm"', "pitch": "20", "columns": "2", "peg_radius": "3"}
 
@@ -25,7 +25,7 @@ def write(folder: Path, entries: dict[str, Any]) -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", list_preset_names())
 def test_presets_are_toolkits_with_a_source(name: str) -> None:
     """Each makes a toolkit, has words and a source, and passes the checks that a user's file has to pass."""
     loaded = load_toolkit(name)
@@ -36,7 +36,7 @@ def test_presets_are_toolkits_with_a_source(name: str) -> None:
     assert isinstance(loaded.toolkit, Vise) == loaded.title.startswith(("vise, ", "the paper's"))
     assert getattr(loaded.toolkit, "rows", None) is None
     content = tomllib.loads((files("workhold") / "data" / "toolkits" / f"{name}.toml").read_text())
-    assert checked_toolkit(content) == content
+    assert check_toolkit_entries(content) == content
     assert 0 < loaded.tolerance.peg < 0.2 or loaded.toolkit.flat_jaws is not None
     assert loaded.tolerance.face == Tolerance().face
 
@@ -44,7 +44,7 @@ def test_presets_are_toolkits_with_a_source(name: str) -> None:
 def test_figures_of_the_presets() -> None:
     """Pitch, peg diameter and columns as published, in mm; an inch is 25.4 mm."""
     figures = {
-        name: load_toolkit(name).fields for name in preset_names() if load_toolkit(name).toolkit.plates
+        name: load_toolkit(name).fields for name in list_preset_names() if load_toolkit(name).toolkit.plates
     }
     told = {name: (f["pitch"], 2 * f["peg_radius"], f.get("columns")) for name, f in figures.items()}
     assert told == {
@@ -77,7 +77,7 @@ def test_tolerances_follow_from_pin_and_hole() -> None:
 
 def test_dowels_are_near_their_names_and_grow() -> None:
     """Pins within 0.03 mm of their nominal diameter, limits in order; the metric standards have the ten sizes 3 to 25."""
-    for series in dowel_series():
+    for series in load_dowel_series():
         assert series.source
         for size in series.sizes:
             for limits in filter(None, (size.pin, size.hole)):
@@ -94,7 +94,7 @@ def test_widths_of_the_iso_classes() -> None:
     ranges = {3: (6, 14), 6: (8, 18), 10: (9, 22), 16: (11, 27), 25: (13, 33)}
     for diameter, (six, eight) in ranges.items():
         for name, width in (("ISO 2338 m6", six), ("iso  2338 h8", eight)):
-            low, high = dowel_size(name, diameter).pin
+            low, high = find_dowel_size(name, diameter).pin
             assert high - low == pytest.approx(width / 1000, abs=1e-9)
 
 

@@ -18,9 +18,9 @@ from toolkit_values import given
 from workhold import Plate, Workpiece
 from workhold.cli.main import app
 from workhold.errors import InputError
-from workhold.files.result.writer import toolkit_entry, toolkit_fields
+from workhold.files.result.writer import make_toolkit_entry, make_toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit, load_toolkit
-from workhold.fixels.kinds import KINDS, table_of, toolkit_of
+from workhold.fixels.kinds import KINDS, find_table, make_toolkit
 from workhold.fixels.support_hardware import HARDWARE, PinLimits, SupportPads, TopClamp
 from workhold.model.support_request import SupportRequest
 from workhold.web.forms import FORMS
@@ -128,15 +128,15 @@ def test_what_cannot_be_is_refused_with_place_and_remedy(tables: str, sentence: 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_kind_writes_and_reads_them_and_says_nothing_without(kind: str) -> None:
     """The keys of files and requests; a toolkit without them has the keys of its table alone."""
-    plain = toolkit_of(kind, given(kind))
-    assert not toolkit_fields(plain).keys() & HARDWARE.keys()
+    plain = make_toolkit(kind, given(kind))
+    assert not make_toolkit_fields(plain).keys() & HARDWARE.keys()
     clamp = TopClamp(tip_radius=4, reach=CLAMP.reach, tip_margin=0.5)
     made = evolve(plain, supports=PADS, top_clamp=clamp, pins=PinLimits(movement_limit=0.25))
-    entry = json.loads(json.dumps(toolkit_fields(made)))
+    entry = json.loads(json.dumps(make_toolkit_fields(made)))
     assert entry["supports"] == {"pad_radius": 3, "pad_margin": 1, "height": 12}
     assert entry["top_clamp"] == {"tip_radius": 4, "tip_margin": 0.5, "reach": [[0, -30, 5, 290]]}
     assert entry["pins"] == {"movement_limit": 0.25}
-    assert toolkit_of(kind, entry) == made
+    assert make_toolkit(kind, entry) == made
     asked = json.loads(json.dumps(given(kind))) | {name: entry[name] for name in HARDWARE}
-    assert FORMS[table_of(kind).noun].model_validate({"kind": kind, **asked}).toolkit() == made
-    assert list(toolkit_entry(made)) == list(toolkit_entry(plain))
+    assert FORMS[find_table(kind).noun].model_validate({"kind": kind, **asked}).to_toolkit() == made
+    assert list(make_toolkit_entry(made)) == list(make_toolkit_entry(plain))

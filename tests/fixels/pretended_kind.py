@@ -13,13 +13,13 @@ from typing import ClassVar
 from workhold.fixels import kinds
 from workhold.fixels.carrier import Carrier, Travel
 from workhold.fixels.fields import MIN_GAP, PEG_RADIUS, PITCH
-from workhold.fixels.making import lattice_carrier, made_from_table, settle
+from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Toolkit, Wording
 
 
-@made_from_table
+@make_class_from_table
 class Press(Toolkit):
     """A press whose bed is a plate with three pegs, and whose ram carries one: they hold what lies between."""
 
@@ -27,7 +27,7 @@ class Press(Toolkit):
     table = FieldTable(
         "press",
         "A press with pegs on its bed and its ram",
-        (PITCH, PEG_RADIUS, MIN_GAP.shown(PageLabel("Smallest gap", "pitch"))),
+        (PITCH, PEG_RADIUS, MIN_GAP.relabel(PageLabel("Smallest gap", "pitch"))),
     )
     noun = "press"
     locked = "a press, its ram"
@@ -66,7 +66,9 @@ class Press(Toolkit):
     def carriers(self) -> tuple[Carrier, ...]:
         """The bed, and the ram beside it, which slides along x."""
         beside = {"offset": (self.pitch[0], 0.0), "travel": Travel(0.0, self.min_gap, None)}
-        return lattice_carrier(self, "bed", noun="jaw"), lattice_carrier(self, "ram", noun="jaw", **beside)
+        return make_lattice_carrier(self, "bed", noun="jaw"), make_lattice_carrier(
+            self, "ram", noun="jaw", **beside
+        )
 
     @property
     def gap(self) -> float:
@@ -119,15 +121,15 @@ def main(drawing: str) -> None:
 
     from workhold.cli.main import app
     from workhold.web.forms import FORMS
-    from workhold.web.toolkits import kinds_answer
+    from workhold.web.toolkits import describe_kinds
 
     outcomes = {}
     for name, words in commands(drawing).items():
         outcome = CliRunner().invoke(app, words)
         outcomes[name] = [outcome.exit_code, outcome.output]
     asked = {"kind": "press", "pitch": [15, 15], "peg_radius": 2}
-    outcomes["page"] = [0, json.dumps([one for one in kinds_answer() if one["name"] == "press"])]
-    outcomes["request"] = [0, str(FORMS["press"].model_validate(asked).toolkit())]
+    outcomes["page"] = [0, json.dumps([one for one in describe_kinds() if one["name"] == "press"])]
+    outcomes["request"] = [0, str(FORMS["press"].model_validate(asked).to_toolkit())]
     sys.stdout.write(json.dumps(outcomes))
 
 

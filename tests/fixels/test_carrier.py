@@ -96,8 +96,8 @@ def test_where_places_are_measured_from() -> None:
     )
     assert (fence.start, fence.lines) == ("column A and the fence", ("column A", "the fence"))
     assert (vise.fixes_rows, fence.fixes_rows, fence.edge) == (False, True, 8.0)
-    assert vise.centres("peg") == "x, y: peg centre, from the centre of hole L-A1."
-    assert fence.centres("peg") == "x from column A, y from the fence, to centres."
+    assert vise.describe_peg_centres("peg") == "x, y: peg centre, from the centre of hole L-A1."
+    assert fence.describe_peg_centres("peg") == "x from column A, y from the fence, to centres."
 
 
 def test_the_words_of_what_is_set() -> None:

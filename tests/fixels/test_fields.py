@@ -10,17 +10,17 @@ from attrs import NOTHING, fields, fields_dict
 
 import manual
 from toolkit_values import VALUES, given
-from workhold.cli.catalogue_commands import own_figures
-from workhold.cli.toolkit_options import ListWords, ToolkitWords, toolkits_to_try
+from workhold.cli.catalogue_commands import list_own_figures
+from workhold.cli.toolkit_options import ListWords, ToolkitWords, list_toolkits_to_try
 from workhold.errors import InputError
-from workhold.files.input_forms import checked_toolkit
-from workhold.files.toolkit_file import described_toolkit, load_toolkit, preset_names
+from workhold.files.input_forms import check_toolkit_entries
+from workhold.files.toolkit_file import list_preset_names, load_toolkit, make_described_toolkit
 from workhold.fixels.fields import OPTIONS
-from workhold.fixels.kinds import KINDS, TABLES, USUAL, owner_of, table_of, toolkit_of
+from workhold.fixels.kinds import KINDS, TABLES, USUAL, find_owner, find_table, make_toolkit
 from workhold.fixels.support_hardware import HARDWARE
-from workhold.units import MILLIMETRE, unit_named
+from workhold.units import MILLIMETRE, find_unit
 from workhold.web.forms import FORMS
-from workhold.web.toolkits import page_fields
+from workhold.web.toolkits import list_page_fields
 
 
 def typed(**words: Any) -> ToolkitWords:
@@ -30,7 +30,7 @@ def typed(**words: Any) -> ToolkitWords:
 
 def typed_of(kind: str) -> dict[str, Any]:
     """The words for a kind with a value of each of its fields."""
-    return {"toolkit": kind} | {row.name: VALUES[row.name][1] for row in table_of(kind).fields}
+    return {"toolkit": kind} | {row.name: VALUES[row.name][1] for row in find_table(kind).fields}
 
 
 def test_every_kind_has_a_table_of_its_constructors_fields() -> None:
@@ -48,7 +48,7 @@ def test_every_kind_has_a_table_of_its_constructors_fields() -> None:
         }
         needed = {name: VALUES[name][0] for name, row in rows.items() if row.is_required}
         defaults = {name: row.default for name, row in rows.items() if not row.is_required}
-        assert toolkit_of(kind, needed | defaults) == toolkit_of(kind, needed)
+        assert make_toolkit(kind, needed | defaults) == make_toolkit(kind, needed)
         assert all(row.missing for row in table.fields if row.is_required)
 
 
@@ -65,25 +65,28 @@ def test_every_field_is_an_option_and_belongs_to_a_part_unless_all_have_it() -> 
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_forms_of_a_toolkit_say_the_same(kind: str) -> None:
     """Of a TOML file, in two units; of a result file; of a request; and of the command's options."""
-    toolkit = toolkit_of(kind, given(kind))
+    toolkit = make_toolkit(kind, given(kind))
     entries = json.loads(json.dumps(given(kind)))
-    assert described_toolkit("x", checked_toolkit({"unit": "mm", "kind": kind, **entries})).toolkit == toolkit
-    inch = unit_named("inch").length(1.0)
+    assert (
+        make_described_toolkit("x", check_toolkit_entries({"unit": "mm", "kind": kind, **entries})).toolkit
+        == toolkit
+    )
+    inch = find_unit("inch").to_mm(1.0)
     halved = {
         row.name: [one / inch for one in value] if isinstance(value, list) else value / inch
-        for row in table_of(kind).fields
+        for row in find_table(kind).fields
         if row.form in ("length", "pitch", "span", "flat", "lengths")
         for value in [entries[row.name]]
     }
-    again = described_toolkit(
-        "x", checked_toolkit({"unit": "inch", "kind": kind, **entries, **halved})
+    again = make_described_toolkit(
+        "x", check_toolkit_entries({"unit": "inch", "kind": kind, **entries, **halved})
     ).toolkit
-    for row in table_of(kind).fields:
+    for row in find_table(kind).fields:
         one, other = getattr(again, row.name), getattr(toolkit, row.name)
         if row.form in ("length", "pitch", "span"):
             assert one == pytest.approx(other, abs=1e-12)
-    assert FORMS[table_of(kind).noun].model_validate({"kind": kind, **entries}).toolkit() == toolkit
-    assert typed(**typed_of(kind)).asked(MILLIMETRE)[0] == toolkit
+    assert FORMS[find_table(kind).noun].model_validate({"kind": kind, **entries}).to_toolkit() == toolkit
+    assert typed(**typed_of(kind)).read_toolkit(MILLIMETRE)[0] == toolkit
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -93,40 +96,40 @@ def test_an_option_of_another_kind_is_refused_by_its_name(kind: str) -> None:
         if row.name in given(kind):
             continue
         with pytest.raises(
-            InputError, match=f"{row.option} is of {owner_of(row).noun}s: a .* has no {row.belongs_to}"
+            InputError, match=f"{row.option} is of {find_owner(row).noun}s: a .* has no {row.belongs_to}"
         ):
-            typed(**typed_of(kind) | {row.name: VALUES[row.name][1]}).asked(MILLIMETRE)
+            typed(**typed_of(kind) | {row.name: VALUES[row.name][1]}).read_toolkit(MILLIMETRE)
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_what_must_be_given_is_asked_for_in_each_form(kind: str) -> None:
     """A sentence that names the entry or the option."""
-    for row in table_of(kind).fields:
+    for row in find_table(kind).fields:
         if not row.is_required:
             continue
         entries = json.loads(json.dumps(given(kind)))
         del entries[row.name]
         with pytest.raises(InputError, match=f"{row.name} is missing: write"):
-            checked_toolkit({"unit": "mm", "kind": kind, **entries})
+            check_toolkit_entries({"unit": "mm", "kind": kind, **entries})
         with pytest.raises(InputError, match=f"{row.missing} is not given: add {row.option},"):
-            typed(**typed_of(kind) | {row.name: None}).asked(MILLIMETRE)
+            typed(**typed_of(kind) | {row.name: None}).read_toolkit(MILLIMETRE)
 
 
 def test_a_span_is_two_lengths() -> None:
     """Less or more is refused with the option's name."""
     for text in ("10", "10,20,30"):
         with pytest.raises(InputError, match=f"--travel '{text}' is not two lengths"):
-            typed(travel=text).fields(MILLIMETRE)
+            typed(travel=text).read_given_fields(MILLIMETRE)
 
 
 def test_an_option_that_is_not_given_changes_nothing() -> None:
     """Neither None nor a list of no holes, as the command hands it on."""
-    assert typed(blocked=[]).fields(MILLIMETRE) == {}
+    assert typed(blocked=[]).read_given_fields(MILLIMETRE) == {}
 
 
 def test_the_page_reads_each_form_by_a_field_that_it_has() -> None:
     """A flat is typed as the one length that a page asks for; what has choices is chosen."""
-    forms = {row.name: {one.form for one in page_fields(row)} for row in OPTIONS}
+    forms = {row.name: {one.form for one in list_page_fields(row)} for row in OPTIONS}
     assert forms["flat"] == {"length"} and forms["clamps"] == {"one"} and forms["directions"] == {"several"}
     assert set().union(*forms.values()) == {
         "length", "count", "pitch", "span", "holes", "several", "one", "lengths", "force"
@@ -137,24 +140,26 @@ def test_a_list_of_pitches_makes_toolkits_of_which_all_that_is_needed_is_given()
     """A gripper's name says its columns, and a plate needs none; a vise without them is refused."""
     varied = ListWords(pitch="10", peg_radius="3")
     for kind, said in (("gripper", 1), ("plate", None)):
-        (one,) = toolkits_to_try(None, kind, varied, MILLIMETRE)
+        (one,) = list_toolkits_to_try(None, kind, varied, MILLIMETRE)
         assert one.fields.get("columns") == said
     with pytest.raises(InputError, match="these lists alone make no vise: give --columns too"):
-        toolkits_to_try(None, "vise", varied, MILLIMETRE)
+        list_toolkits_to_try(None, "vise", varied, MILLIMETRE)
 
 
 def test_a_kind_picks_the_presets_that_have_its_fields() -> None:
     """A vise that opens is made of vises, and of no plate."""
-    picked = toolkits_to_try(None, "opening-vise", ListWords(), MILLIMETRE)
+    picked = list_toolkits_to_try(None, "opening-vise", ListWords(), MILLIMETRE)
     assert {one.name for one in picked} == {
-        name for name in preset_names() if table_of(load_toolkit(name).kind) is table_of("opening-vise")
+        name
+        for name in list_preset_names()
+        if find_table(load_toolkit(name).kind) is find_table("opening-vise")
     }
 
 
 def test_figures_of_a_toolkit_are_those_that_are_not_usual() -> None:
     """With a word where no source gives them, and one where there is no limit."""
     entries = {"unit": "mm", "kind": "plate", "pitch": 20, "peg_radius": 3, "assumed": ["clamp_radius"]}
-    assert list(own_figures(described_toolkit("x", entries), MILLIMETRE)) == [
+    assert list(list_own_figures(make_described_toolkit("x", entries), MILLIMETRE)) == [
         ("radius of the clamp's tip", "3 mm (assumed: no source says)"),
         ("from the clamp's hole to its tip", "any"),
         ("the part is pushed along", "-x"),

@@ -12,7 +12,7 @@ from attrs import fields_dict
 from toolkit_values import given
 from workhold import Plate, Vise
 from workhold.errors import InputError
-from workhold.fixels.kinds import KINDS, TABLES, toolkit_of
+from workhold.fixels.kinds import KINDS, TABLES, make_toolkit
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.limits import MOST_LENGTH
@@ -25,7 +25,7 @@ LENGTHS = [one for one in ROWS if one.values[1].form == "length"]
 
 def made(kind: str, **changes: Any) -> Toolkit:
     """A toolkit with a value of every field, some of them changed."""
-    return toolkit_of(kind, given(kind) | changes)
+    return make_toolkit(kind, given(kind) | changes)
 
 
 @pytest.mark.parametrize(("kind", "row"), LENGTHS)
@@ -100,7 +100,7 @@ def test_only_the_allowed_counts_are_taken(kind: str, row: ToolkitField) -> None
 def test_values_of_each_form_are_taken_as_people_write_them() -> None:
     """One pitch for both directions, whole numbers as floats, a flat by its distance, a direction by itself."""
     for pitch, columns in product((20, [20.0, 20.0]), (8, 8.0)):
-        plate = toolkit_of(
+        plate = make_toolkit(
             "plate", {"pitch": pitch, "peg_radius": 3, "columns": columns, "directions": "+y", "flat": 3}
         )
         assert (plate.pitch, plate.columns, plate.directions) == ((20.0, 20.0), 8, ("+y",))  # type: ignore[attr-defined]
@@ -148,8 +148,8 @@ def test_a_flat_is_as_wide_as_its_peg_lets_it_be_and_given_by_name() -> None:
 
 def test_aliases_are_kinds_with_fields_of_their_own() -> None:
     """A gripper is a vise of one column, and a plate needs no columns."""
-    assert toolkit_of("gripper", {"pitch": 10, "peg_radius": 3}) == Vise(pitch=10, columns=1, peg_radius=3)
-    assert toolkit_of("plate", {"pitch": 10, "peg_radius": 3}) == Plate(pitch=10, peg_radius=3)
+    assert make_toolkit("gripper", {"pitch": 10, "peg_radius": 3}) == Vise(pitch=10, columns=1, peg_radius=3)
+    assert make_toolkit("plate", {"pitch": 10, "peg_radius": 3}) == Plate(pitch=10, peg_radius=3)
 
 
 @pytest.mark.parametrize(
@@ -169,4 +169,4 @@ def test_what_a_kind_does_not_have_is_refused_in_one_sentence(
     kind: str, fields: dict[str, object], words: str
 ) -> None:
     with pytest.raises(InputError, match=words):
-        toolkit_of(kind, fields)
+        make_toolkit(kind, fields)

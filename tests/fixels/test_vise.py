@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from strategies import vises
 from workhold import Peg, Vise
 from workhold.errors import InputError
-from workhold.fixels.carrier import Holes, column_letters, holes_named
+from workhold.fixels.carrier import Holes, make_column_letters, parse_hole_name
 from workhold.units import MILLIMETRE
 
 VALID = {"pitch": 10, "columns": 2, "peg_radius": 3}
@@ -99,18 +99,18 @@ def test_hole_names():
 def test_a_hole_is_found_again_by_its_name(carrier: str, column: int, row: int | None) -> None:
     """Of carriers of any names, also in small letters and without the hyphen."""
     holes = Holes(carrier, column, row)
-    assert holes_named(holes.name, ("left", "right"), "jaw") == holes
-    assert holes_named(f" {holes.name.lower().replace('-', '')}", ("left", "right"), "jaw") == holes
+    assert parse_hole_name(holes.name, ("left", "right"), "jaw") == holes
+    assert parse_hole_name(f" {holes.name.lower().replace('-', '')}", ("left", "right"), "jaw") == holes
     plates = {"left": "wall", "right": "floor"}
     on_plate = Holes(plates[carrier], column, row)
-    assert holes_named(on_plate.name, plates.values(), "plate") == on_plate
+    assert parse_hole_name(on_plate.name, plates.values(), "plate") == on_plate
     with pytest.raises(InputError, match="give plate, column letter and row"):
-        holes_named(holes.name, ("wall", "floor"), "plate")
+        parse_hole_name(holes.name, ("wall", "floor"), "plate")
 
 
 def test_column_letters_count_without_a_zero():
     """A..Z, AA..ZZ, AAA: all different, in order of length and then of the alphabet."""
-    names = [column_letters(k) for k in range(26 + 26**2 + 1)]
+    names = [make_column_letters(k) for k in range(26 + 26**2 + 1)]
     assert names == sorted(names, key=lambda name: (len(name), name)) and len(set(names)) == len(names)
     assert (names[0], names[25], names[26], names[-2], names[-1]) == ("A", "Z", "AA", "ZZ", "AAA")
 
@@ -118,14 +118,16 @@ def test_column_letters_count_without_a_zero():
 def test_further_changes_are_what_their_words_say() -> None:
     """Lengths in the words are those of the changed vise; half the pitch is offered where pegs fit it both ways."""
     vise = Vise(pitch=(16, 20), columns=2, peg_radius=4, min_gap=12)
-    assert {one.words: vise.changed(one.fields) for one in vise.further_changes(MILLIMETRE)} == {
+    assert {one.words: vise.changed(one.fields) for one in vise.list_further_changes(MILLIMETRE)} == {
         "with a smallest gap of 8 mm": evolve(vise, min_gap=8.0),
         "with one more column on each jaw": evolve(vise, columns=3),
         "with the right jaw's rows offset by 10 mm": evolve(vise, row_offset=10.0),
         "with half the pitch": evolve(vise, pitch=(8.0, 10.0), min_gap=8.0),
     }
     narrow = evolve(vise, pitch=(15.0, 20.0), min_gap=8.0, row_offset=1.0)
-    assert [one.words for one in narrow.further_changes(MILLIMETRE)] == ["with one more column on each jaw"]
+    assert [one.words for one in narrow.list_further_changes(MILLIMETRE)] == [
+        "with one more column on each jaw"
+    ]
 
 
 def test_limits_are_lifted_one_by_one() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from attrs import evolve
 
 from candidate_examples import candidates
-from workhold.listing.canonical_form import canonical_form, changes, listed_once, packed
+from workhold.listing.canonical_form import list_each_once, make_canonical, mark_changes, pack_integers
 
 
 def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
@@ -19,7 +19,7 @@ def test_same_holes_and_pose_on_two_faces_is_listed_once() -> None:
     twice = evolve(
         twice, feature=feature, theta=twice.theta + np.array([0.0, 3e-9]), point=twice.point + 1e-9
     )
-    assert len(listed_once(twice).standing) == 1
+    assert len(list_each_once(twice).standing) == 1
 
 
 def test_same_holes_and_orientation_in_two_places_are_two() -> None:
@@ -30,7 +30,7 @@ def test_same_holes_and_orientation_in_two_places_are_two() -> None:
     point[1] += [1.0, -2.0]
     both = evolve(both, point=point)
     for order in ([0, 1], [1, 0], [1, 0, 1]):
-        assert listed_once(both.take(np.array(order))).point[:, 0].tolist() == [[1.0, -2.0], [0.0, 0.0]]
+        assert list_each_once(both.take(np.array(order))).point[:, 0].tolist() == [[1.0, -2.0], [0.0, 0.0]]
 
 
 def test_fixtures_are_in_the_order_of_types_holes_orientation_faces_and_place() -> None:
@@ -43,7 +43,7 @@ def test_fixtures_are_in_the_order_of_types_holes_orientation_faces_and_place() 
     # So that each but the first would come first by what counts less.
     point[2:] -= 5.0 * np.arange(1, 5)[:, None, None]
     many = evolve(many, standing=standing, row=row, theta=theta, feature=feature, point=point)
-    listed = listed_once(many.take(np.array([3, 5, 1, 0, 4, 2])))
+    listed = list_each_once(many.take(np.array([3, 5, 1, 0, 4, 2])))
     assert np.array_equal(listed.point, point)
 
 
@@ -60,7 +60,7 @@ def test_half_turn_swaps_the_jaws_to_one_form() -> None:
         null=here.null[:, ::-1],
         force=here.force[:, ::-1],
     )
-    one, other = canonical_form(here, 2), canonical_form(there, 2)
+    one, other = make_canonical(here, 2), make_canonical(there, 2)
     for name in ("standing", "feature", "column", "row", "null"):
         assert np.array_equal(getattr(one, name), getattr(other, name))
     assert np.allclose(one.theta, other.theta)
@@ -70,9 +70,9 @@ def test_orientations_at_the_ends_of_the_half_turn_are_one() -> None:
     """An orientation a hair below half a turn and one a hair above 0 are brought to the same side."""
     here = candidates(2)
     turned = evolve(here, theta=np.array([1e-9, 2e-9]))
-    assert (np.abs(canonical_form(turned, 2).theta) < 1e-8).all()
+    assert (np.abs(make_canonical(turned, 2).theta) < 1e-8).all()
     below = evolve(here, theta=np.array([pi - 1e-9, 2 * pi - 1e-9]))
-    assert (np.abs(canonical_form(below, 2).theta) < 1e-8).all()
+    assert (np.abs(make_canonical(below, 2).theta) < 1e-8).all()
 
 
 def test_packed_numbers_keep_their_order() -> None:
@@ -80,10 +80,10 @@ def test_packed_numbers_keep_their_order() -> None:
     random = np.random.default_rng(5)
     for most, width in ((1, 2), (9, 4), (1000, 9), (1 << 40, 3)):
         numbers = random.integers(0, most + 1, (300, width))
-        words = packed((numbers[:, :1], most), (numbers[:, 1:], most))
+        words = pack_integers((numbers[:, :1], most), (numbers[:, 1:], most))
         assert len(words) == -(-width // (63 // int(most).bit_length()))
         order, packed_order = np.lexsort(numbers.T[::-1]), np.lexsort(words[::-1])
         assert np.array_equal(numbers[order], numbers[packed_order])
         fresh = np.ones(300, np.bool_)
         fresh[1:] = (numbers[order][1:] != numbers[order][:-1]).any(axis=1)
-        assert np.array_equal(changes([word[order] for word in words]), fresh)
+        assert np.array_equal(mark_changes([word[order] for word in words]), fresh)

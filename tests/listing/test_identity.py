@@ -15,10 +15,10 @@ from workhold.geometry.symmetry import rotate_vectors, symmetries
 from workhold.listing.identity import (
     Identity,
     SetCount,
-    entries,
-    identity_order,
-    near_duplicates,
-    smallest_images,
+    find_smallest_images,
+    make_entries,
+    number_near_duplicates,
+    order_by_identity,
 )
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import TILT
@@ -57,19 +57,19 @@ def test_what_is_turned_has_the_same_smallest_image(name: str, corners: int) -> 
     table, identity = result.table, Identity(toolkit, query.workpiece)
     assert len(identity.rotations) == corners
     assert len(table) > 10 or (corners, name) == (4, "wall")
-    words, pose = identity.smallest(table)
+    words, pose = identity.find_smallest_images(table)
     sets, everything = identity.count(words, pose, table.arrangement), SetCount(identity)
     for rotation in identity.rotations:
         turned = carried(table, rotation.angle)
         everything.add(turned)
-        again = identity.smallest(turned)
+        again = identity.find_smallest_images(turned)
         np.testing.assert_array_equal(again[0], words)
         np.testing.assert_allclose(again[1], pose, atol=SAME_POSE)
     np.testing.assert_array_equal(everything.distinct, sets)
     np.testing.assert_array_equal(
         everything.found, np.bincount(table.arrangement, minlength=len(sets)) * corners
     )
-    assert everything.by_type(sets) == result.distinct
+    assert everything.count_by_type(sets) == result.distinct
     # Each is one of as many as there are rotations, unless half a turn makes it the same again.
     own_half_turn = corners % 2 == 0 and name in ("vise", "opposed")
     assert len(table) / corners <= sets.sum() <= len(table) / corners * (2 if own_half_turn else 1)
@@ -92,7 +92,7 @@ def test_half_a_turn_of_everything_makes_a_fixture_of_opposed_clamps_the_same() 
         position=np.stack(turned, axis=1),
         jaw_separation=table.jaw_separation[:, ::-1],
     )
-    one, other = identity.smallest(table), identity.smallest(halfway)
+    one, other = identity.find_smallest_images(table), identity.find_smallest_images(halfway)
     np.testing.assert_array_equal(one[0], other[0])
     np.testing.assert_allclose(one[1], other[1], atol=SAME_POSE)
     assert len(table) > 10
@@ -105,7 +105,10 @@ def test_the_best_of_a_seat_are_named_without_their_clamps() -> None:
     moved = evolve(table, column=table.column + np.array([0, 0, 0, 1, 0], np.int32))
     seats, every = (Identity(query.toolkit, query.workpiece, every) for every in (False, True))
     for identity, differs in ((seats, False), (every, True)):
-        (words, pose), (others, other) = identity.smallest(table), identity.smallest(moved)
+        (words, pose), (others, other) = (
+            identity.find_smallest_images(table),
+            identity.find_smallest_images(moved),
+        )
         same = all(np.array_equal(*pair) for pair in zip(words, others, strict=True)) and np.array_equal(
             pose, other
         )
@@ -118,7 +121,7 @@ def test_what_is_equal_in_holes_and_faces_is_ordered_by_its_place() -> None:
     one = answer(query).table.take(np.zeros(1, np.int64))
     moved = [evolve(one, position=one.position + np.array([step, 0.0])) for step in (2.0, 0.0, 1.0)]
     table = FixtureTable.joined(moved)
-    assert identity_order(table).tolist() == [1, 2, 0]
+    assert order_by_identity(table).tolist() == [1, 2, 0]
 
 
 PLATE = Workpiece.from_loops("plate", [[[0, 0, 0], [34, 0, 0], [34, 34, 0], [0, 34, 0]]])
@@ -147,7 +150,7 @@ def test_rotations_and_mirror_images_are_found(loop: list[list[float]], count: i
 def test_fixtures_of_a_symmetric_part_fall_together() -> None:
     """In a square plate a group is closed: with a fixture it has those on faces turned or mirrored."""
     result = design(PLATE, VISE)
-    group = near_duplicates(result.table, PLATE, VISE)
+    group = number_near_duplicates(result.table, PLATE, VISE)
     seen: dict[tuple[object, ...], set[int]] = {}
     for number, fixture, tilt in zip(group.tolist(), result, result.table.quality[:, TILT], strict=True):
         # Up to turns and mirror images, what four faces of a square have in common is how often each is touched and
@@ -169,7 +172,7 @@ def test_clamps_keep_their_faces(clamps: int) -> None:
     part = Workpiece.from_loops("lopsided", [[[0, 0, 0], [70, 0, 0], [58, 44, 0], [0, 36, 0]]])
     plate = Plate(pitch=20, peg_radius=3, columns=6, rows=5, clamps=clamps, directions=["-x", "-y"])
     result = design(part, plate)
-    group = near_duplicates(result.table, part, plate)
+    group = number_near_duplicates(result.table, part, plate)
     seen: dict[int, set[object]] = {}
     for number, fixture in zip(group.tolist(), result, strict=True):
         locators = tuple(sorted(peg.face for peg in fixture.pegs[:3]))
@@ -187,9 +190,9 @@ def test_the_first_image_is_the_first_of_all(corners: int) -> None:
     loop = [[30 * cos(tau * k / corners), 30 * sin(tau * k / corners), 0.0] for k in range(corners)]
     part, random = Workpiece.from_loops("polygon", [loop]), np.random.default_rng(corners)
     keys = np.column_stack([random.integers(0, 2, (300, 2)), random.integers(0, corners, (300, 4))])
-    carriers = VISE.peg_carriers(keys[:, 0].astype(np.int8))
+    carriers = VISE.find_peg_carriers(keys[:, 0].astype(np.int8))
     keys[:, 2:] = np.take_along_axis(keys[:, 2:], np.lexsort((keys[:, 2:], carriers), axis=-1), axis=1)
-    for key, first in zip(keys.tolist(), smallest_images(keys, part, VISE).tolist(), strict=True):
+    for key, first in zip(keys.tolist(), find_smallest_images(keys, part, VISE).tolist(), strict=True):
         images = []
         for image in symmetries([face.segment for face in part.faces]):
             a, b, c, d = (int(image[face]) for face in key[2:])
@@ -202,13 +205,13 @@ def test_the_first_image_is_the_first_of_all(corners: int) -> None:
 def test_entries_count_every_fixture_once() -> None:
     """Those listed, those like them, and those left out; each entry is the first of its group, and none left out is fit."""
     result = design(load("widget"), Vise(pitch=8, columns=2, peg_radius=3))
-    shown = entries(result)
+    shown = make_entries(result)
     assert len(shown.index) + shown.like.sum() + shown.unfit == len(result)
     assert shown.unfit == unfit(result.table.quality, result.query.tolerance).sum() > 0
     assert (np.diff(shown.index) > 0).all()
-    everything = entries(result, with_unfit=True)
+    everything = make_entries(result, with_unfit=True)
     assert everything.unfit == 0 and len(everything.index) + everything.like.sum() == len(result)
-    group = near_duplicates(result.table, result.workpiece, result.toolkit)
+    group = number_near_duplicates(result.table, result.workpiece, result.toolkit)
     assert all(index == np.flatnonzero(group == group[index])[0] for index in everything.index)
 
 
@@ -222,6 +225,6 @@ def test_what_the_half_turn_swaps_is_alike() -> None:
             for a in fields(FixtureTable)
         }
     )
-    one, other = np.split(near_duplicates(both, result.workpiece, result.toolkit), 2)
+    one, other = np.split(number_near_duplicates(both, result.workpiece, result.toolkit), 2)
     two_and_two = result.table.arrangement == 0
     assert (one == other)[two_and_two].all() and not (one == other)[~two_and_two].all()

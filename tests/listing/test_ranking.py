@@ -13,7 +13,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from workhold import InputError, Load, Tolerance
-from workhold.listing.ranking import OrderKeys, billionths, error_steps, is_worse, keys_of
+from workhold.listing.ranking import (
+    OrderKeys,
+    convert_to_billionths,
+    count_error_steps,
+    is_worse,
+    make_order_keys,
+)
 from workhold.model.first_choice import has_house_order
 from workhold.model.quality import (
     CLOSURE_MARGIN,
@@ -42,7 +48,7 @@ def keys(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance, angl
     """The keys of fixtures without any factor."""
     error = quality[:, LOCATION_ERROR] if has_house_order(ranking) else None
     asked: Any = SimpleNamespace(rank_by=ranking, tolerance=tolerance)
-    return keys_of(quality, asked, error, np.zeros(len(quality), np.int64) + angles)
+    return make_order_keys(quality, asked, error, np.zeros(len(quality), np.int64) + angles)
 
 
 def rank(quality: np.ndarray, ranking: Sequence[str], tolerance: Tolerance) -> np.ndarray:
@@ -82,7 +88,7 @@ def test_the_best_marked_are_the_first_ranked(errors: list[float], most: int, da
     quality = figures(len(errors), location_error=errors, closure_margin=margins)
     ranking = ("location_error", "closure_margin")
     order = rank(quality, ranking, LOOSE)
-    marked = keys(quality, ranking, LOOSE).kept(most)
+    marked = keys(quality, ranking, LOOSE).are_among_best(most)
     assert marked[order[:most]].all()
     last = quality[order[min(most, len(order)) - 1]]
     for index in np.flatnonzero(marked):
@@ -158,13 +164,17 @@ def test_steps_are_counted_in_whole_numbers() -> None:
     """A tenth more is a step, however numbers are rounded; and so is each further tenth of what is then."""
     least = 50_000_000
     errors = [least, 54_999_999, 55_000_000, 60_499_999, 60_500_000, 66_549_999, 66_550_000, least - 7]
-    assert error_steps(np.array(errors), least).tolist() == [0, 0, 1, 1, 2, 2, 3, 0]
+    assert count_error_steps(np.array(errors), least).tolist() == [0, 0, 1, 1, 2, 2, 3, 0]
     many = np.random.default_rng(1).integers(1, 10**12, 300)
-    for one, steps in zip(many.tolist(), error_steps(many, 977).tolist(), strict=True):
+    for one, steps in zip(many.tolist(), count_error_steps(many, 977).tolist(), strict=True):
         assert one * 10**steps >= 977 * 11**steps or steps == 0
         assert one < Fraction(11, 10) ** (steps + 1) * 977
-    assert error_steps(np.array([0, 1, 2]), 0).tolist() == [0, 0, 7]
-    assert billionths(np.array([0.055, np.nan, 1e300])).tolist() == [55_000_000, 4 * 10**17, 4 * 10**17]
+    assert count_error_steps(np.array([0, 1, 2]), 0).tolist() == [0, 0, 7]
+    assert convert_to_billionths(np.array([0.055, np.nan, 1e300])).tolist() == [
+        55_000_000,
+        4 * 10**17,
+        4 * 10**17,
+    ]
 
 
 def test_a_warning_counts_before_steps_and_steps_before_the_angle() -> None:
@@ -200,10 +210,10 @@ class Drawn:
 def test_what_is_kept_holds_the_best_whatever_comes_later(data: st.DataObject, most: int, cut: int) -> None:
     """Kept of a part and then of all: the first so many of all are among it, and the least error stays."""
     whole = Drawn(data).keys
-    first = np.flatnonzero(whole.take(slice(cut)).kept(most))
+    first = np.flatnonzero(whole.take(slice(cut)).are_among_best(most))
     rest = np.arange(min(cut, len(whole)), len(whole))
     some = np.concatenate([first, rest])
-    kept = some[whole.take(some).kept(most)]
+    kept = some[whole.take(some).are_among_best(most)]
     assert set(whole.order(whole.least)[:most].tolist()) <= set(kept.tolist())
     assert whole.take(kept).least == whole.least
 
@@ -213,10 +223,10 @@ def test_what_is_kept_holds_the_best_whatever_comes_later(data: st.DataObject, m
 def test_what_is_beaten_is_not_among_the_best(data: st.DataObject, most: int) -> None:
     """With an error known to be the least of all, and without; and a bound is never beaten by itself."""
     found, others = Drawn(data).keys, Drawn(data).keys
-    kept = found.take(found.kept(most))
+    kept = found.take(found.are_among_best(most))
     for floor in (0, others.lowest):
-        beaten = others.beaten(kept, most, min(floor, others.lowest))
-        whole = kept.followed_by(others)
+        beaten = others.are_beaten(kept, most, min(floor, others.lowest))
+        whole = kept.concatenate(others)
         best = whole.order(whole.least)[:most] - len(kept)
         assert not beaten[best[best >= 0]].any()
         assert (

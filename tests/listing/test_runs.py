@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from workhold.listing import runs
-from workhold.listing.runs import Runs, SortedRun, in_order, key_of, order_of
+from workhold.listing.runs import Runs, SortedRun, make_keys, map_in_order, order_of
 
 
 @pytest.fixture
@@ -26,10 +26,10 @@ def test_keys_are_in_the_order_of_the_numbers() -> None:
     random = np.random.default_rng(3)
     special = [0.0, -0.0, 1.0, -1.0, np.inf, -np.inf, np.nan, -np.nan, 5e-324, -5e-324, 1e300, -1e300]
     floats, whole = random.choice(special, (2, 400)), random.integers(0, 3, 400) << 40
-    key = key_of(floats[0], whole, floats[1])
+    key = make_keys(floats[0], whole, floats[1])
     expected = np.lexsort([floats[1], whole, floats[0]])
     np.testing.assert_array_equal(np.argsort(key, kind="stable"), expected)
-    assert len(key_of(np.zeros(0), np.zeros(0, np.int64))) == 0
+    assert len(make_keys(np.zeros(0), np.zeros(0, np.int64))) == 0
 
 
 @pytest.mark.parametrize("most", [runs.MOST, 10**9, 10**6, 500])
@@ -45,7 +45,7 @@ def test_the_order_of_keys_is_that_of_their_bytes(monkeypatch: pytest.MonkeyPatc
                 np.round(random.normal(size=count), 1),
                 np.where(random.random(count) < 0.3, np.nan, random.normal(size=count)),
             )
-            keys = key_of(*(some[k] for k in random.permutation(4)[:kinds]))
+            keys = make_keys(*(some[k] for k in random.permutation(4)[:kinds]))
             np.testing.assert_array_equal(order_of(keys), np.argsort(keys, kind="stable"))
 
 
@@ -59,13 +59,15 @@ def test_rows_are_sorted_and_equal_keys_stay_in_order(
     numbers = random.integers(0, values, rows)
     columns = (np.arange(rows), random.random((rows, 2)), np.arange(rows).astype(np.int8))
     kept = Runs(tmp_path if on_disk else None)
-    kept.add(SortedRun.of(key_of(numbers[:0]), tuple(column[:0] for column in columns)))
+    kept.add(SortedRun.from_columns(make_keys(numbers[:0]), tuple(column[:0] for column in columns)))
     for start in range(0, rows, 33):
         block = slice(start, start + 33)
-        kept.add(SortedRun.of(key_of(numbers[block]), tuple(column[block] for column in columns)))
+        kept.add(
+            SortedRun.from_columns(make_keys(numbers[block]), tuple(column[block] for column in columns))
+        )
     assert len(kept) == rows
     assert (kept.scratch is not None) == (on_disk and rows > 150)
-    parts = [part() for part in kept.parts()]
+    parts = [part() for part in kept.list_parts()]
     order = np.argsort(numbers, kind="stable")
     for number, column in enumerate(columns):
         np.testing.assert_array_equal(np.concatenate([part.columns[number] for part in parts]), column[order])
@@ -96,7 +98,7 @@ def test_a_full_disk_is_an_error(small: None, tmp_path: Path, monkeypatch: pytes
     monkeypatch.setattr(runs, "TemporaryFile", lambda **_: Full())
     kept = Runs(tmp_path)
     with pytest.raises(OSError, match="No space left"):
-        kept.add(SortedRun.of(key_of(np.arange(200)), (np.arange(200),)))
+        kept.add(SortedRun.from_columns(make_keys(np.arange(200)), (np.arange(200),)))
 
 
 @pytest.mark.parametrize("threads", [1, 3])
@@ -109,6 +111,6 @@ def test_work_is_handed_back_in_order(threads: int) -> None:
             yield number
 
     with ThreadPoolExecutor(threads) as pool:
-        for number, square in enumerate(in_order(pool, 4, lambda n: n * n, items())):
+        for number, square in enumerate(map_in_order(pool, 4, lambda n: n * n, items())):
             assert square == number**2
             assert len(begun) <= number + 5

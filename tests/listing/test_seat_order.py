@@ -17,7 +17,7 @@ from cad_parts import cad_part
 from toolkit_results import NOTCHED, part
 from workhold import Load, Plate, Query, Restrictions, Result, Tolerance, answer, verify
 from workhold.conventions import SAME_PLACE, SAME_POSE
-from workhold.files.result.writer import notes_entry
+from workhold.files.result.writer import make_notes_entry
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.chord.intervals import share_one_line
 from workhold.kernels.contact import record
@@ -120,7 +120,7 @@ def test_what_is_left_out_does_not_depend_on_threads_and_verifies(listing: str, 
     for outcome in (verify(again), verify_file(tmp_path / "r.json")):
         assert (outcome.proven, outcome.faults) == (6, ())
     fields = json.loads(texts[0])
-    (tmp_path / "without.json").write_text(json.dumps({**fields, **notes_entry(result.notes[1:])}))
+    (tmp_path / "without.json").write_text(json.dumps({**fields, **make_notes_entry(result.notes[1:])}))
     assert any("how many pairs" in fault for fault in verify_file(tmp_path / "without.json").faults)
 
 
@@ -162,16 +162,16 @@ def test_no_fixture_ranks_before_the_bound_of_its_locators(
             if Random(number).random() < 0.1:
                 kept.tables, bound = [kept.tables[0].take(slice(0))], groups.bounds.take([number])
                 if groups.sharpened is not None:
-                    bound = groups.between(np.array([number])).bounds
-                yield np.sort(groups.among(np.array([number]))[0])
-                table, query = kept.together(), kept.query
+                    bound = groups.select_groups_between(np.array([number])).bounds
+                yield np.sort(groups.select_contacts(np.array([number]))[0])
+                table, query = kept.concatenate(), kept.query
                 keys = order_keys(table, query, kept.effective)
                 for rows, least in ((keys.first, bound.first), (keys.rest, bound.rest)):
                     assert not any(is_worse(least, row)[0] for row in rows)
                 assert keys.error is None or (keys.error >= bound.error).all()
                 seen.append(len(keys))
 
-    monkeypatch.setattr(SeatGroups, "batches", one_by_one)
+    monkeypatch.setattr(SeatGroups, "iterate_batches", one_by_one)
     for ranking in (
         None,
         ["edge_distance", "tilt"],
@@ -191,13 +191,13 @@ def contacts_of(query: Query, monkeypatch: pytest.MonkeyPatch) -> tuple[list[Any
     monkeypatch.setattr(shares, "SQUARE_FIRST", inf)
     monkeypatch.setattr(design, "LIMITED_FROM", inf)
     found: list[Any] = []
-    ordered = lattice_shares.ordered_groups
+    ordered = lattice_shares.make_ordered_groups
 
     def noted(records: Any, problems: Any, query: Query) -> SeatGroups:
         found[:] = records, problems
         return ordered(records, problems, query)
 
-    monkeypatch.setattr(lattice_shares, "ordered_groups", noted)
+    monkeypatch.setattr(lattice_shares, "make_ordered_groups", noted)
     answer(query, threads=1)
     records, problems = found
     return [part.take(slice(None)) for part in records], problems
@@ -209,7 +209,7 @@ def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.Monk
     query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
     random = np.random.default_rng(1)
     for records, problem in zip(*contacts_of(query, monkeypatch), strict=True):
-        off = seat_order.places_off(records, problem)
+        off = seat_order.bound_places_off(records, problem)
         said = records[:, record.LARGEST_RADIUS] + records[:, record.REACH] * problem.wrench_length
         vague = said > SAME_PLACE
         assert vague.any() and (off <= said).all() and (off[~vague] == said[~vague]).all()
@@ -219,10 +219,10 @@ def test_locators_are_known_where_a_clamp_grazes_an_arc(monkeypatch: pytest.Monk
             moved[:, [record.TAIL_X, record.TAIL_Y]] += away[:, :2]
             moved[:, record.PSI] += away[:, 2] / problem.wrench_length
             moved[:, record.LARGEST_RADIUS] += 4 * size
-            assert (seat_order.places_off(moved, problem) + off >= np.hypot(*away.T[:2])).all()
+            assert (seat_order.bound_places_off(moved, problem) + off >= np.hypot(*away.T[:2])).all()
             # Beside the holes a place is known no better than the orientation, nor where it is hardly known.
             moved[:, record.REACH] += size / problem.wrench_length
-            assert (seat_order.places_off(moved, problem) >= size).all()
+            assert (seat_order.bound_places_off(moved, problem) >= size).all()
 
 
 @pytest.mark.thorough
@@ -230,9 +230,11 @@ def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> Non
     """Seats nearer than places and orientations are told apart share a group, which has no bound then."""
     query = Query(cad_part(5), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
     records, problems = contacts_of(query, monkeypatch)
-    before = seat_order.ordered_groups([PackedContacts.of([part]) for part in records], problems, query)
+    before = seat_order.make_ordered_groups(
+        [PackedContacts.from_blocks([part]) for part in records], problems, query
+    )
     known = int(np.flatnonzero(before.bounds.is_known)[0])
-    first = int(before.among(np.array([known]))[0].min())
+    first = int(before.select_contacts(np.array([known]))[0].min())
     assert first < len(records[0])
     for turn, move in ((2 * SAME_POSE, 0.0), (0.0, 0.3 * SAME_PLACE)):
         other = records[0][first].copy()
@@ -241,7 +243,9 @@ def test_no_contact_stands_for_two_seats(monkeypatch: pytest.MonkeyPatch) -> Non
         x, y = rotate_vectors(other[record.TAIL_X], other[record.TAIL_Y], turn)
         other[record.TAIL_X], other[record.TAIL_Y] = x + move, y
         more = [np.vstack([records[0], other]), *records[1:]]
-        groups = seat_order.ordered_groups([PackedContacts.of([part]) for part in more], problems, query)
+        groups = seat_order.make_ordered_groups(
+            [PackedContacts.from_blocks([part]) for part in more], problems, query
+        )
         assert len(groups) == len(before)
         place = np.flatnonzero(groups.order == len(records[0]))
         number = np.searchsorted(groups.starts, place, side="right") - 1
@@ -254,10 +258,12 @@ def test_contacts_at_joints_bound_their_seats(monkeypatch: pytest.MonkeyPatch) -
     """On whole pitches pegs stand where an edge becomes a corner; such seats are bounded on either face."""
     query = Query(rounded(120.0, 80.0, 3.0), Plate(pitch=20, peg_radius=3, clamps=2), best=5)
     records, problems = contacts_of(query, monkeypatch)
-    groups = seat_order.ordered_groups([PackedContacts.of([each]) for each in records], problems, query)
+    groups = seat_order.make_ordered_groups(
+        [PackedContacts.from_blocks([each]) for each in records], problems, query
+    )
     assert (~groups.bounds.is_known).mean() < 0.05
     for each, problem in zip(records, problems, strict=True):
-        number, more = seat_order.on_each_face(each, problem, 3)
+        number, more = seat_order.assign_contacts_to_faces(each, problem, 3)
         assert (np.diff(number) >= 0).all() and len(np.unique(number)) == len(each) < len(more)
         # Nothing but the feature differs, and the places are the same.
         features = slice(record.FEATURES, record.FEATURES + 3)
@@ -273,11 +279,11 @@ def test_packed_contacts_are_the_records_in_their_order(large: float) -> None:
     blocks = [np.hstack([random.integers(-9, 9, (n, 13)), random.normal(size=(n, 6))]) for n in (5, 0, 70000)]
     blocks[0][2, 4], blocks[2][0, record.REACH] = large, np.inf
     whole = np.concatenate(blocks)
-    packed = PackedContacts.of(blocks)
+    packed = PackedContacts.from_blocks(blocks)
     assert blocks == [] and np.array_equal(packed.take(slice(None)), whole)
-    assert np.array_equal(np.concatenate(list(packed.parts())), whole)
+    assert np.array_equal(np.concatenate(list(packed.iterate_parts())), whole)
     assert np.array_equal(packed.take(np.array([70001, 3])), whole[[70001, 3]])
-    assert [part.shape for part in PackedContacts.of([]).parts()] == [(0, 19)]
+    assert [part.shape for part in PackedContacts.from_blocks([]).iterate_parts()] == [(0, 19)]
 
 
 @pytest.mark.thorough
@@ -305,7 +311,7 @@ def test_numbers_of_seats_are_those_of_their_definition(monkeypatch: pytest.Monk
 def test_a_group_holds_several_places_and_is_bounded_by_the_best() -> None:
     """Contacts on the same holes at the same angle may be of two seats: neither stands for the other."""
     order, off = np.array([4, 3, 1, 2, 0]), np.array([3.0, 1.0, 1.0, 1.0, 2.0])
-    assert seat_order.best_known(order, off, np.array([0, 3])).tolist() == [1, 2]
+    assert seat_order.find_best_known(order, off, np.array([0, 3])).tolist() == [1, 2]
 
 
 @pytest.mark.thorough

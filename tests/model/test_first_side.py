@@ -35,10 +35,10 @@ def test_standing_is_as_the_reader_has_it(axis: str) -> None:
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
     from OCP.gp import gp_Pnt
 
-    from workhold.files.step.library import along, bounding_box
+    from workhold.files.step.library import compute_bounding_box, turn_axis_up
 
     box = BRepPrimAPI_MakeBox(gp_Pnt(1, 2, 3), 10.0, 20.0, 40.0).Solid()
-    low, high = bounding_box(along(box, axis))
+    low, high = compute_bounding_box(turn_axis_up(box, axis))
     ends = np.array([compute_standing_rotation(axis) @ corner for corner in ((1, 2, 3), (11, 22, 43))])
     assert np.allclose(ends.min(axis=0), low, atol=1e-6) and np.allclose(ends.max(axis=0), high, atol=1e-6)
 

@@ -9,7 +9,7 @@ import pytest
 import workhold
 from toolkit_results import MOUTH, part
 from workhold import Fence, Fixture, FlatJaw, InputError, Plate, Result, Vise
-from workhold.drawing.sheet_facts import result_details
+from workhold.drawing.sheet_facts import collect_sheet_details
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.moved_setup import (
     count_spare_holes,
@@ -20,7 +20,7 @@ from workhold.model.moved_setup import (
     overhangs,
 )
 from workhold.model.shown import bound_placed_part
-from workhold.web.answers import fixture_answer
+from workhold.web.answers import describe_fixture
 
 LOOP = [(0, 0, 0), (100, 0, 0), (100, 30, 0), (40, 34, 0), (40, 90, 0), (4, 90, 0)]
 KITE = [(0, 0, 0), (56, 6, 0), (48, 44, 0), (10, 37, 0)]
@@ -54,7 +54,7 @@ def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) ->
         by = [steps * pitch for steps, pitch in zip(move, toolkit.plates[0].pitch, strict=True)]
         for one, other in zip(fixture.pegs, placed.pegs, strict=True):
             assert (other.x - one.x, other.y - one.y) == pytest.approx(by)
-            carrier = toolkit.carrier(one.carrier)
+            carrier = toolkit.find_carrier(one.carrier)
             if carrier.has_lattice:
                 assert carrier.place(other.column, other.row, placed.travel) == pytest.approx(
                     (other.x, other.y)
@@ -81,7 +81,7 @@ def middle_off(fixture: Fixture, result: Result, axis: int) -> float:
     box = bound_placed_part(result.workpiece, fixture.pose)
     ends = [(box.x0, box.y0)[axis], (box.x1, box.y1)[axis], *((peg.x, peg.y)[axis] for peg in fixture.pegs)]
     for peg in fixture.pegs:
-        carrier = result.toolkit.carrier(peg.carrier)
+        carrier = result.toolkit.find_carrier(peg.carrier)
         if carrier.has_body_behind:
             ends.append(carrier.place(peg.column, peg.row)[axis])
     count = (plate.columns, plate.rows)[axis] or 1
@@ -153,14 +153,14 @@ def test_the_sheet_has_it_there_and_the_page_lays_the_plate_so() -> None:
     toolkit = KINDS["plate"]
     result = held(toolkit)
     asked: dict[str, Any] = {"zero": None}
-    placed, details = result_details(result, 1, **asked)
-    row = fixture_answer(result[0], result.workpiece, toolkit)
+    placed, details = collect_sheet_details(result, 1, **asked)
+    row = describe_fixture(result[0], result.workpiece, toolkit)
     assert [peg.hole for peg in placed.pegs] == row["holes"] != [peg.hole for peg in result[0].pegs]
     assert row["pegs"] == [[peg.x, peg.y] for peg in result[0].pegs]
     moved = [steps * 20.0 for steps in details.moved]
     assert row["placed"] == moved
-    there, details = result_details(result, 1, at="B2")
+    there, details = collect_sheet_details(result, 1, at="B2")
     assert min(peg.column for peg in there.pegs) == 1 and details.is_asked_place
     mouth = workhold.design(part(MOUTH), FlatJaw(pitch=9, peg_radius=2, columns=12, jaw_width=40), best=3)
-    row = fixture_answer(mouth[0], mouth.workpiece, mouth.toolkit)
+    row = describe_fixture(mouth[0], mouth.workpiece, mouth.toolkit)
     assert row["stands_out_of"] == "flat jaw" and row["hangs_over"]

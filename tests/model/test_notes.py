@@ -9,7 +9,7 @@ import pytest
 
 from fakes import fake_result
 from workhold import Fence, Vise
-from workhold.errors import listed
+from workhold.errors import join_words
 from workhold.model.notes import (
     KINDS,
     STAGES,
@@ -66,7 +66,7 @@ def test_each_stage_has_a_sentence(wording: object) -> None:
     assert len(set(said)) == 8 and all(("line 17" in words) == (k % 2 == 1) for k, words in enumerate(said))
     asked = ("faces to avoid", "rows of holes")
     for stage in STAGES[:2]:
-        assert listed(asked) in str(NoFixture(stage, WORDING, asked=asked))
+        assert join_words(asked) in str(NoFixture(stage, WORDING, asked=asked))
 
 
 def test_numbers_are_put_as_they_are_read() -> None:

@@ -44,20 +44,20 @@ def refuse_moved(fixture: Fixture, toolkit: Toolkit, triple: Triple, found: Reco
         assert (peg.face, peg.force, peg.flat_deg) == (old.face, old.force, old.flat_deg)
     travels = iter(new.travels)
     for peg in new.pegs:
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         if carrier.is_wall:
             assert peg.y == pytest.approx(0.0, abs=1e-9)
             continue
         travelled = next(travels) if carrier.on is not None else new.travel
         assert carrier.place(peg.column, peg.row, travelled) == pytest.approx((peg.x, peg.y), abs=1e-9)
         assert peg.place in (None, carrier.place_name(peg.column, peg.row))
-        home = toolkit.carrier(carrier.stands_on)
+        home = toolkit.find_carrier(carrier.stands_on)
         in_column, in_row = carrier.counted
         assert not in_column or 0 <= peg.column < (home.columns or 10**9)
         assert not in_row or 0 <= peg.row < (home.rows or 10**9)
         assert not (in_column and in_row and home.is_blocked(peg.column, peg.row))
     for old, pad in zip(triple.supports, found.supports, strict=True):
-        plate = toolkit.carrier(pad.carrier)
+        plate = toolkit.find_carrier(pad.carrier)
         assert (pad.x, pad.y) == (old.x, old.y)
         assert plate.place(pad.column, pad.row, new.travel) == pytest.approx(
             new.pose.apply(pad.x, pad.y), abs=1e-9

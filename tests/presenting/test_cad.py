@@ -91,9 +91,9 @@ def cadquery(monkeypatch: pytest.MonkeyPatch) -> None:
     ],
 )
 def test_an_axis_is_named_by_what_people_have(up: Any, name: str) -> None:
-    from workhold.presenting.assembly import axis_name
+    from workhold.presenting.assembly import find_axis_name
 
-    assert axis_name(up) == name
+    assert find_axis_name(up) == name
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ import pytest
 import workhold
 from fakes import fake_result
 from workhold.errors import InputError
-from workhold.files.result.fixture_text import column_names, result_csv_text
+from workhold.files.result.fixture_text import list_column_names, write_result_csv
 from workhold.presenting import data
-from workhold.presenting.data import columns_of
+from workhold.presenting.data import make_columns
 
 RECTANGLE = workhold.Workpiece.from_loops("bar", [[[0, 0, 0], [70, 0, 0], [70, 40, 0], [0, 40, 0]]])
 
@@ -29,8 +29,8 @@ def two_clamps() -> workhold.Result:
 def test_columns_are_those_of_the_csv_form(result: workhold.Result, monkeypatch: pytest.MonkeyPatch) -> None:
     """Names and values, also over several blocks."""
     monkeypatch.setattr("workhold.files.result.fixture_text.BLOCK", 3)
-    rows = list(csv.DictReader(io.StringIO("".join(result_csv_text(result)))))
-    columns = columns_of(result)
+    rows = list(csv.DictReader(io.StringIO("".join(write_result_csv(result)))))
+    columns = make_columns(result)
     assert list(columns) == list(rows[0]) and len(rows) == len(result)
     for name, values in columns.items():
         for row, value in zip(rows, values, strict=True):
@@ -44,8 +44,8 @@ def test_columns_are_those_of_the_csv_form(result: workhold.Result, monkeypatch:
 def test_no_fixture_makes_an_empty_table() -> None:
     """With all its columns."""
     result = fake_result(0)
-    assert {name: len(column) for name, column in columns_of(result).items()} == dict.fromkeys(
-        column_names(result), 0
+    assert {name: len(column) for name, column in make_columns(result).items()} == dict.fromkeys(
+        list_column_names(result), 0
     )
 
 

@@ -17,7 +17,7 @@ from workhold import Fixture, Workpiece
 from workhold.errors import InputError
 from workhold.geometry.segment import Line
 from workhold.kernels.chord.evaluation import chord, distance_to_end, parameter_on
-from workhold.presenting.lesson import MOST_FACES, lesson
+from workhold.presenting.lesson import MOST_FACES, compute_lesson
 
 ROOT = Path(__file__).parents[2]
 PARTS = ["widget", "flange", "8Handle", str(ROOT / "examples" / "bracket.dxf")]
@@ -27,7 +27,7 @@ PARTS = ["widget", "flange", "8Handle", str(ROOT / "examples" / "bracket.dxf")]
 def taught(request: Any) -> tuple[Workpiece, dict[str, Any], list[Fixture]]:
     """A part with its lesson, and all fixtures of its vise with two pegs on each jaw."""
     part = workhold.load(request.param)
-    made = lesson(part)
+    made = compute_lesson(part)
     toolkit = made["toolkit"]
     vise = workhold.Vise(toolkit["pitch"], toolkit["columns"], toolkit["peg_radius"])
     return part, made, list(workhold.design(part, vise, types=["I"]))
@@ -124,7 +124,7 @@ def test_a_part_that_nothing_holds_is_refused() -> None:
     with pytest.raises(
         InputError, match=r"no vise that was tried holds disc .* choose a part with more sides"
     ):
-        lesson(disc)
+        compute_lesson(disc)
 
 
 def test_short_faces_of_a_detailed_part_are_left_alone() -> None:
@@ -133,10 +133,10 @@ def test_short_faces_of_a_detailed_part_are_left_alone() -> None:
     corners = [[2.0 * k, 0.0 if k % 2 else 1.0, 0.0] for k in range(teeth)]
     comb = Workpiece.from_loops("comb", [[*corners, [70.0, 0.0, 0.0], [75.0, 40.0, 0.0], [-8.0, 50.0, 0.0]]])
     longer = comb.loops[0].tolist()
-    assert len(comb.faces) <= MOST_FACES and lesson(comb)["faces_left_out"] == 0
+    assert len(comb.faces) <= MOST_FACES and compute_lesson(comb)["faces_left_out"] == 0
     more = [[1.0 * k, 0.0 if k % 2 else 1.0, 0.0] for k in range(2 * teeth)]
     fine = Workpiece.from_loops("fine", [[*more, *longer[-3:]]])
-    made = lesson(fine)
+    made = compute_lesson(fine)
     assert made["faces_left_out"] == len(fine.faces) - MOST_FACES > 10
     lengths = {face.number: face.segment.length for face in fine.faces}
     least = sorted(lengths.values())[-MOST_FACES]
@@ -153,7 +153,7 @@ def test_the_examples_of_the_page_are_what_the_program_says() -> None:
     found = re.search(r"const EXAMPLES = (.*);", lessons.PLACE.read_text(encoding="utf-8"))
     assert found is not None
     kept = json.loads(found[1])
-    assert alike(kept, lessons.examples())
+    assert alike(kept, lessons.make_examples())
 
 
 def alike(one: Any, other: Any) -> bool:

@@ -10,7 +10,7 @@ import pytest
 import workhold
 from workhold import Load
 from workhold.errors import InputError
-from workhold.presenting.closing_shown import closing_shown
+from workhold.presenting.closing_shown import show_closing
 from workhold.presenting.live_picture import USUAL, LivePicture, TriedForce
 from workhold.statics.loads import load_cases
 
@@ -25,7 +25,7 @@ ANY = pytest.mark.parametrize("result", [VISE, PLATE, TWO], ids=["vise", "plate"
 
 def live(result: workhold.Result, index: int = 0) -> LivePicture:
     """The picture of a fixture, with 200 N as the usual force."""
-    return LivePicture.of(result, index, 200.0)
+    return LivePicture.from_result(result, index, 200.0)
 
 
 @ANY
@@ -33,11 +33,11 @@ def test_an_arrow_is_the_force_that_it_shows(result: workhold.Result) -> None:
     """There and back it is the same, and a force turns with the part."""
     picture = live(result)
     push = TriedForce(12.0, 9.0, 150.0, 240.0)
-    arrow = picture.arrow(push)
+    arrow = picture.compute_push_arrow(push)
     assert math.hypot(arrow[2] - arrow[0], arrow[3] - arrow[1]) == pytest.approx(0.75 * USUAL)
-    assert picture.push(arrow).numbers == pytest.approx(push.numbers)
+    assert picture.read_push(arrow).numbers == pytest.approx(push.numbers)
     # On the page y runs down: a force along the part's x axis points where that axis is turned to.
-    x, y, to_x, to_y = picture.arrow(TriedForce(0.0, 0.0, 200.0, 0.0))
+    x, y, to_x, to_y = picture.compute_push_arrow(TriedForce(0.0, 0.0, 200.0, 0.0))
     angle = math.radians(picture.fixture.pose.theta_deg)
     assert (to_x - x, y - to_y) == pytest.approx((USUAL * math.cos(angle), USUAL * math.sin(angle)))
 
@@ -69,25 +69,25 @@ def test_contact_forces_point_into_the_part() -> None:
     picture = live(VISE)
     for number, (_, (nx, ny)) in enumerate(picture.bench.contacts):
         for force, way in ((50.0, -1), (-50.0, 1)):
-            x, y, to_x, to_y = picture.force_arrow(number, force)
+            x, y, to_x, to_y = picture.compute_force_arrow(number, force)
             assert (to_x - x) * nx - (to_y - y) * ny == pytest.approx(way * 50.0)
 
 
 def test_what_is_no_force_asks_for_one() -> None:
     """Too short an arrow, and no arrow."""
     picture = live(VISE)
-    push = picture.push([100.0, 100.0, 102.0, 101.0])
+    push = picture.read_push([100.0, 100.0, 102.0, 101.0])
     assert push.size == 0 and picture.answer(push, None, "screw")["holds"] is None
     for bad in ([1.0, 2.0, 3.0], [1.0, 2.0, 3.0, "x"], [0.0, 0.0, math.nan, 0.0], [0.0, 0.0, math.inf, 1.0]):
         with pytest.raises(InputError, match="four"):
-            picture.push(bad)  # type: ignore[arg-type]
+            picture.read_push(bad)  # type: ignore[arg-type]
 
 
 @ANY
 def test_what_moves_stands_in_groups_of_its_own(result: workhold.Result) -> None:
     """Every peg has its name, the part is one group, and the ways are those of what clamps."""
     picture = live(result)
-    root = ET.fromstring(picture.svg().encode())
+    root = ET.fromstring(picture.draw_svg().encode())
     assert len(root.findall("{*}g[@class='part']")) == 1
     names = {text.text for text in root.iter("{http://www.w3.org/2000/svg}text")}
     assert names >= {peg.hole for peg in picture.fixture.pegs}
@@ -100,7 +100,7 @@ def test_what_moves_stands_in_groups_of_its_own(result: workhold.Result) -> None
 
 def test_names_stay_on_the_page() -> None:
     for index in range(min(len(VISE), 40)):
-        root = ET.fromstring(live(VISE, index).svg().encode())
+        root = ET.fromstring(live(VISE, index).draw_svg().encode())
         for text in root.iter("{http://www.w3.org/2000/svg}text"):
             assert 10 < float(text.get("x", "")) < 630 and 0 < float(text.get("y", "")) < 480
 
@@ -111,7 +111,7 @@ def test_a_closing_comes_home() -> None:
     shown = 0
     for index in range(8):
         picture = live(VISE, index)
-        closing = closing_shown(picture)
+        closing = show_closing(picture)
         assert closing["keyframes"][-1] == pytest.approx([0.0] * 4, abs=2e-3)
         assert closing["keyframes"][0][3] > 0 and len(closing["keyframes"]) <= 121
         if len(closing["keyframes"]) > 2:
@@ -127,7 +127,7 @@ def test_a_keyframe_is_where_the_part_lies() -> None:
     """Turned about its middle and shifted, every point of the part is where its pose puts it."""
     picture = live(VISE)
     pose = workhold.Pose(picture.fixture.pose.theta_deg + 7.0, 3.0, -2.0)
-    turned, dx, dy, _ = picture.keyframe(pose, 1.0)
+    turned, dx, dy, _ = picture.make_keyframe(pose, 1.0)
     cx, cy = picture.center
     for point in ((0.0, 0.0), (41.0, 0.0), (13.0, 37.0)):
         x, y = picture.view(picture.fixture.pose.apply(*point))
@@ -137,7 +137,7 @@ def test_a_keyframe_is_where_the_part_lies() -> None:
 
 
 def test_two_clamps_say_in_which_order_they_are_tightened() -> None:
-    closing = closing_shown(live(TWO))
+    closing = show_closing(live(TWO))
     assert "clamp" in closing["words"] and closing["keyframes"][0][3] > 0
 
 

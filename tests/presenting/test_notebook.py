@@ -15,16 +15,16 @@ import pytest
 import workhold
 from fakes import fake_result
 from workhold import Restrictions
-from workhold.cli.tables import result_table
+from workhold.cli.tables import tabulate_result
 from workhold.errors import InputError
-from workhold.listing.identity import entries
+from workhold.listing.identity import make_entries
 from workhold.model.quality import RANKED
-from workhold.presenting.figure_words import figure_text
+from workhold.presenting.figure_words import format_figure_number
 from workhold.presenting.live_picture import LivePicture
-from workhold.presenting.markup import MOST_SVG, Markup, compact, image, table
+from workhold.presenting.markup import MOST_SVG, Markup, compact_svg, make_image, make_table
 from workhold.presenting.notebook import MOST_ROWS, MOST_SEATS
 from workhold.units import MILLIMETRE
-from workhold.web.answers import fixture_answer, rows_answer
+from workhold.web.answers import describe_fixture, describe_rows
 
 RECTANGLE = [[[0, 0, 0], [60, 0, 0], [60, 40, 0], [0, 40, 0]]]
 STADIUM = [[-20, -15, 0], [20, -15, 1], [20, 15, 0], [-20, 15, 1]]
@@ -122,8 +122,8 @@ def test_only_plain_html_is_shown(thing: Any) -> None:
 @pytest.mark.parametrize("result", [RESULT, fake_result(30)], ids=["wedge", "fakes"])
 def test_the_table_of_a_result_is_that_of_the_command(result: workhold.Result) -> None:
     """Headings and cells are the same but for the picture, and no more rows than there is room for."""
-    page, shown = Page(result._repr_html_()), entries(result)
-    theirs = result_table(result, shown, MOST_ROWS)
+    page, shown = Page(result._repr_html_()), make_entries(result)
+    theirs = tabulate_result(result, shown, MOST_ROWS)
     headings, *rows = [[cell for k, cell in enumerate(row) if k != 1] for row in page.rows]
     assert headings == [column.removeprefix(">") for column in theirs.columns]
     assert rows == [list(row) for row in theirs.rows]
@@ -133,7 +133,7 @@ def test_the_table_of_a_result_is_that_of_the_command(result: workhold.Result) -
 
 def test_a_result_says_how_many_entries_are_not_shown() -> None:
     result = fake_result(30)
-    assert f"{MOST_ROWS} of {len(entries(result).index)} entries shown" in result._repr_html_()
+    assert f"{MOST_ROWS} of {len(make_entries(result).index)} entries shown" in result._repr_html_()
     few = fake_result(2)
     assert "shown" not in Page(few._repr_html_()).words and "2 fixtures are listed" in few._repr_html_()
 
@@ -163,12 +163,14 @@ def test_where_no_edge_is_none_is_said() -> None:
         head, first, *_ = (row for row in Page(result._repr_html_()).rows if row)
         (place,) = (k for k, name in enumerate(head) if name.startswith("edge distance"))
         assert (first[place] == "none") == (words == "none")
-        (live,) = (row for row in LivePicture.of(result, 0, 200.0).figures if row[0] == "edge distance")
+        (live,) = (
+            row for row in LivePicture.from_result(result, 0, 200.0).figures if row[0] == "edge distance"
+        )
         assert live[1] == (words or f"{expected} mm")
-        answer = fixture_answer(result[0], part, result.toolkit)
+        answer = describe_fixture(result[0], part, result.toolkit)
         assert answer["edgeless"] == (words == "none")
         assert answer["quality"]["edge_distance"] == result[0].quality["edge_distance"]
-        (row,) = rows_answer(result.table.take(slice(0, 1)), part, result.toolkit, [1])
+        (row,) = describe_rows(result.table.take(slice(0, 1)), part, result.toolkit, [1])
         assert row["rank"] == 1 and row.items() <= {"rank": 1, **answer}.items()
 
 
@@ -222,12 +224,12 @@ def test_seats_are_bounded_and_counted() -> None:
 def test_figures_are_written_with_their_decimals(key: str, value: float, words: str) -> None:
     """What is not known is a dash, and what has no end is said in a word."""
     figure = next(one for one in RANKED if one.key == key)
-    assert figure_text(figure, value, MILLIMETRE) == words
+    assert format_figure_number(figure, value, MILLIMETRE) == words
 
 
 def test_a_part_shows_its_faces() -> None:
     (picture,) = Page(WEDGE._repr_html_()).pictures
-    assert picture.decode() == compact(WEDGE.draw())
+    assert picture.decode() == compact_svg(WEDGE.draw())
 
 
 def test_a_fixture_of_no_result_is_shown_as_words() -> None:
@@ -269,10 +271,10 @@ def test_what_is_shown_is_small() -> None:
 
 def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
     """The compact one draws the same pixels but for rounding, and numbers of a map stay exact."""
-    from workhold.drawing import svg_to_png
+    from workhold.drawing import convert_svg_to_png
 
     drawn = RESULT[0].draw()
-    small = compact(drawn)
+    small = compact_svg(drawn)
     assert len(small) < 0.9 * len(drawn)
     maps = [re.findall(r'data-model-to-page="([^"]*)"', text) for text in (drawn, small)]
     assert maps[0] == maps[1] != []
@@ -282,13 +284,14 @@ def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
     from PIL import Image
 
     before, after = (
-        np.asarray(Image.open(BytesIO(svg_to_png(text, 600))).convert("L"), float) for text in (drawn, small)
+        np.asarray(Image.open(BytesIO(convert_svg_to_png(text, 600))).convert("L"), float)
+        for text in (drawn, small)
     )
     assert np.abs(before - after).mean() < 0.5
 
 
 def test_a_table_escapes_what_is_not_markup() -> None:
-    made = table((">a<b",), [("<i>",), (Markup("<b>x</b>"),)])
+    made = make_table((">a<b",), [("<i>",), (Markup("<b>x</b>"),)])
     assert (
         '<th align="right" style="text-align:right" nowrap>a&lt;b</th>' in made
         and "&lt;i&gt;" in made
@@ -298,8 +301,8 @@ def test_a_table_escapes_what_is_not_markup() -> None:
 
 def test_a_large_picture_is_one_of_pixels() -> None:
     drawn = RESULT[0].draw()
-    assert "svg+xml" in image(drawn, "words", 100)
+    assert "svg+xml" in make_image(drawn, "words", 100)
     padded = drawn.replace("</svg>", f"<desc>{'x' * MOST_SVG}</desc></svg>")
-    assert "data:image/png" in image(padded, 'a "word"', 100) and "&quot;word&quot;" in image(
+    assert "data:image/png" in make_image(padded, 'a "word"', 100) and "&quot;word&quot;" in make_image(
         padded, 'a "word"', 100
     )

@@ -12,8 +12,8 @@ import pytest
 from fakes import fake_result, plate
 from workhold.drawing import draw_features, draw_fixture
 from workhold.errors import InputError
-from workhold.presenting.markup import compact
-from workhold.units import unit_named
+from workhold.presenting.markup import compact_svg
+from workhold.units import find_unit
 
 RESULT = fake_result(4)
 
@@ -26,14 +26,14 @@ def test_a_picture_shows_itself(thing: Any, tmp_path: Path) -> None:
     assert picture.startswith(("<svg", "<?xml"))
     assert picture == (tmp_path / "picture.svg").read_text()
     shown = picture._repr_html_().partition("base64,")[2].partition('"')[0]
-    assert b64decode(shown).decode() == compact(picture)
+    assert b64decode(shown).decode() == compact_svg(picture)
     thing.draw(tmp_path / "picture.PNG")
     assert (tmp_path / "picture.PNG").read_bytes().startswith(b"\x89PNG")
 
 
 def test_pictures_are_those_of_the_command_line() -> None:
     """With title, unit and peg radius handed on."""
-    inch = unit_named("inch")
+    inch = find_unit("inch")
     one = RESULT[1]
     told = draw_fixture(one, RESULT.workpiece, RESULT.toolkit, title="Fixture 2 of 4", unit=inch)
     assert one.draw(unit="inch") == told

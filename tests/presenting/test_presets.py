@@ -9,7 +9,7 @@ import pytest
 import workhold
 from workhold import Query
 from workhold.errors import InputError
-from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.files.toolkit_file import list_preset_names, load_toolkit
 
 CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw, workhold.PlainVise)
 
@@ -17,7 +17,7 @@ CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw, work
 def test_every_preset_is_one_of_its_class_alone() -> None:
     """The same toolkit as the command line has by that name."""
     listed = [(kind, name) for kind in CLASSES for name in kind.presets()]
-    assert sorted(name for _, name in listed) == sorted(preset_names())
+    assert sorted(name for _, name in listed) == sorted(list_preset_names())
     for kind, name in listed:
         assert kind.preset(name) == load_toolkit(name).toolkit
         assert workhold.Tolerance.preset(name) == load_toolkit(name).tolerance

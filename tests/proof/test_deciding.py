@@ -20,7 +20,7 @@ from workhold.contact.problem import Problem
 from workhold.conventions import END_SLACK
 from workhold.kernels.contact import record
 from workhold.listing import collector as finish_module
-from workhold.listing.results import Work, listed_result
+from workhold.listing.results import Work, list_result
 from workhold.proof import deciding
 from workhold.proof import interval_newton as settling
 from workhold.proof.ball_contacts import end_slacks
@@ -35,10 +35,10 @@ def found() -> tuple[Problem, list[NDArray[np.float64]], Result]:
 
     def keep(problem: Problem, records: list[NDArray[np.float64]], work: Work, **options: object) -> Result:
         kept.append((problem, records))
-        return listed_result(problem, records, work, **options)  # type: ignore[arg-type]
+        return list_result(problem, records, work, **options)  # type: ignore[arg-type]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(design_module, "listed_result", keep)
+        patch.setattr(design_module, "list_result", keep)
         result = design_module.design(load("oblongPart"), Vise(pitch=8, columns=2, peg_radius=3))
     return *kept[0], result
 
@@ -63,7 +63,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     problem, records, result = found
     cancel = Event()
     cancel.set()
-    part = listed_result(problem, records, Work(True, {}), cancel=cancel)
+    part = list_result(problem, records, Work(True, {}), cancel=cancel)
     assert not part.complete
     assert part.proof is not None and result.proof is not None
     assert part.proof.undecided == ()
@@ -72,7 +72,7 @@ def test_a_cancel_leaves_what_takes_long(found: tuple[Problem, list[NDArray[np.f
     assert part.proof.escalated < result.proof.escalated
     proof = part.proof
     assert proof.candidates == proof.discarded_by_bound + proof.verified
-    everything = listed_result(problem, records, Work(True, {}), cancel=Event())
+    everything = list_result(problem, records, Work(True, {}), cancel=Event())
     assert everything.complete
     assert len(everything) == len(result)
 
@@ -164,7 +164,7 @@ def test_both_kinds_of_interval_arithmetic_decide_alike(
     """With everything open sent to ball arithmetic the same records are proven."""
     problem, records, result = found
     monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
-    other = listed_result(problem, records, Work(True, {}))
+    other = list_result(problem, records, Work(True, {}))
     assert np.array_equal(other.table.column, result.table.column)
     assert np.array_equal(other.table.row, result.table.row)
     assert np.abs(other.table.theta - result.table.theta).max() < 1e-12

@@ -26,7 +26,7 @@ def searched(
     fence = Fence((9, 7), 2, wall_offset=4, clamp_radius=2.5, directions=[direction])
     search = WallSearch(Problem.of(Query(Workpiece.from_loops("part", [loop]), fence, contact_margin=margin)))
     parts = [part for edge in search.edges for part in search.fixtures(edge)]
-    found = WallFixtures.joined(parts)
+    found = WallFixtures.concatenate(parts)
     columns = (found.edge, found.row, found.line, *found.feature.T, *np.round(found.tip.T, 6))
     return search, set(zip(*(column.tolist() for column in columns), strict=True))
 
@@ -62,7 +62,7 @@ def test_pairs_that_cannot_oppose_each_other_need_no_look(loop: list[list[float]
     )
     quick, whole = WallSearch(problem), WallSearch(problem, explains=True)
     for edge in quick.edges:
-        one, other = (WallFixtures.joined(list(search.fixtures(edge))) for search in (quick, whole))
+        one, other = (WallFixtures.concatenate(list(search.fixtures(edge))) for search in (quick, whole))
         for name in ("row", "line", "locator", "tip", "feature", "null", "push"):
             np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
     for name in ("examined", "verified", "escalated", "undecided"):

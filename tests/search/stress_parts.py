@@ -13,10 +13,10 @@ from flint import arb, ctx
 from fixture_sets import Listed
 from workhold import Fixture, Pose, Query, Vise, Workpiece
 from workhold.verification import Judge
-from workhold.verification.ball_geometry import BallOutline, dot
-from workhold.verification.contacts import BallContact, contact_system, minors
+from workhold.verification.ball_geometry import BallOutline, compute_dot_product
+from workhold.verification.contacts import BallContact, compute_minors, evaluate_contact_system
 from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.placing import certified_zero
+from workhold.verification.placing import enclose_zero
 
 __all__ = [
     "Carried",
@@ -72,9 +72,9 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
     for fixture in fixtures:
         start = [radians(fixture.pose.theta_deg), fixture.pose.x, fixture.pose.y, fixture.travel]
         with ctx.workprec(256):
-            faces = BallOutline.of(part).faces
-            contacts = [judge.hardware.contact(peg, faces[peg.face]) for peg in fixture.pegs]
-            zero = certified_zero(partial(contact_system, contacts), start)
+            faces = BallOutline.from_workpiece(part).faces
+            contacts = [judge.hardware.make_contact(peg, faces[peg.face]) for peg in fixture.pegs]
+            zero = enclose_zero(partial(evaluate_contact_system, contacts), start)
             if zero is None:
                 out.append(Carried(fixture, "missing", "", 0.0))
                 continue
@@ -87,12 +87,17 @@ def carried_over(fixtures: Iterable[Fixture], part: Workpiece, vise: Vise) -> li
 
 def solved_fixture(fixture: Fixture, contacts: list[BallContact], zero: list[arb]) -> Fixture:
     """A fixture with the pose, jaw separation and forces of an enclosed root of its contact equations."""
-    pose = Balls.of(*zero)
-    points = [contact.in_part(pose) for contact in contacts]
-    normals = [contact.side.outward(point) for contact, point in zip(contacts, points, strict=True)]
-    vector = minors(points, normals)
+    pose = Balls.from_turn_and_place(*zero)
+    points = [contact.compute_center_in_part(pose) for contact in contacts]
+    normals = [
+        contact.side.compute_outward_normal(point) for contact, point in zip(contacts, points, strict=True)
+    ]
+    vector = compute_minors(points, normals)
     across = pose.cosine, -pose.sine
-    push = -sum((vector[k] * dot(across, normals[k]) for k in range(4) if not contacts[k].way[0] > 0), arb(0))
+    push = -sum(
+        (vector[k] * compute_dot_product(across, normals[k]) for k in range(4) if not contacts[k].way[0] > 0),
+        arb(0),
+    )
     theta, x, y, separation = (float(entry.mid()) for entry in zero)
     opened = separation - fixture.travel
     first, second, third, fourth = (

@@ -12,7 +12,7 @@ import pytest
 from workhold import Query, Vise, Workpiece, count_contacts, design, load, save
 from workhold.contact.problem import Problem
 from workhold.listing.collector import BestFixtures, Needed
-from workhold.listing.ranking import measured
+from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable
 from workhold.search.toolkit_search import ToolkitSearch
 
@@ -146,7 +146,7 @@ def test_nothing_is_decided_long_after_somebody_asked_to_stop(monkeypatch: pytes
     sleep(0.02)
     best.waiting.append(second)
     before = sum(account.records for account in best.accounts)
-    _, account = best.finished()
+    _, account = best.finish()
     assert account.records == before and account.left >= len(second) > 0
 
 
@@ -155,18 +155,18 @@ def test_what_waits_is_measured_a_share_at_a_time(monkeypatch: pytest.MonkeyPatc
     problem, records = waiting_records("oblongPart", Vise(pitch=8, columns=4, peg_radius=3))
     at_once = BestFixtures(problem)
     at_once.waiting.extend(records)
-    together, _ = at_once.finished()
+    together, _ = at_once.finish()
     monkeypatch.setattr("workhold.listing.collector.BLOCK", 64)
     seen: list[int] = []
 
     def watched(table: FixtureTable, problem: Problem) -> FixtureTable:
         seen.append(len(table))
-        return measured(table, problem)
+        return measure_table(table, problem)
 
-    monkeypatch.setattr("workhold.listing.collector.measured", watched)
+    monkeypatch.setattr("workhold.listing.collector.measure_table", watched)
     in_shares = BestFixtures(problem)
     in_shares.waiting.extend(records)
-    best, _ = in_shares.finished()
+    best, _ = in_shares.finish()
     assert len(seen) > 3 and max(seen) < 3 * 64
     assert np.array_equal(best.theta, together.theta) and np.array_equal(best.point, together.point)
 

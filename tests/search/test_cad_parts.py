@@ -18,9 +18,9 @@ from slow_fence import slow_fence
 from slow_plate import seen, slow_plate
 from workhold import Fence, Plate, Query, Result, Vise, Workpiece, design, verify
 from workhold.algebra import find_fixtures_by_algebra
-from workhold.files.toolkit_file import load_toolkit, preset_names
+from workhold.files.toolkit_file import list_preset_names, load_toolkit
 
-PRESETS = preset_names()
+PRESETS = list_preset_names()
 # Fixtures listed of each part.
 BEST = 20
 # No peg carries more than this many times the clamping force: what would is a clamp that grazes.

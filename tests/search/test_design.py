@@ -47,7 +47,7 @@ def test_max_opening_moves_pegs_outward_or_forbids(free: Result) -> None:
     limited = design(free.workpiece, vise(max_opening=most))
     separation = limited.table.jaw_separation
     assert ((separation <= most + 1e-6) & (separation >= 10.0 - 1e-6)).all()
-    left = free.toolkit.peg_carriers(free.table.arrangement) == 0
+    left = free.toolkit.find_peg_carriers(free.table.arrangement) == 0
     span_left = np.where(left, free.table.column, 1).min(axis=1)
     span_right = 1 - np.where(left, 0, free.table.column).max(axis=1)
     needed = np.maximum(np.ceil((free.table.jaw_separation - most) / 10.0 - 1e-9), 0)

@@ -16,11 +16,11 @@ from workhold.contact.problem import Problem
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import compute_convex_hull
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, X, Y
-from workhold.listing.bounds import preferred_angles
-from workhold.listing.canonical_form import listed_once
-from workhold.listing.collector import Needed, listed_form
-from workhold.listing.placing import placed
-from workhold.listing.ranking import PER_MM, measured, order_keys, usual_errors
+from workhold.listing.bounds import list_preferred_angles
+from workhold.listing.canonical_form import list_each_once
+from workhold.listing.collector import Needed, decide_and_list
+from workhold.listing.placing import place_candidates
+from workhold.listing.ranking import PER_MM, find_usual_errors, measure_table, order_keys
 from workhold.proof.deciding import Course
 from workhold.search import design as designing
 from workhold.search import shares
@@ -173,9 +173,11 @@ def found_errors(search: ToolkitSearch, **asked: Any) -> tuple[np.ndarray[Any, A
     problem = search.problem
     blocks = search.blocks(problem.query.types, **asked)
     records = np.concatenate([np.zeros((0, 19)), *(block.work(Needed()) for block in blocks)])
-    candidates = listed_once(listed_form(records, problem, Course(len(records)))[0])
+    candidates = list_each_once(decide_and_list(records, problem, Course(len(records)))[0])
     keys = order_keys(
-        measured(placed(candidates, problem), problem), problem.query, usual_errors(problem.query)
+        measure_table(place_candidates(candidates, problem), problem),
+        problem.query,
+        find_usual_errors(problem.query),
     )
     assert keys.error is not None
     return keys.error / PER_MM, keys.is_fine
@@ -227,10 +229,10 @@ def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> No
         parts = [
             found_errors(
                 ToolkitSearch.of(problem, near=near, precision=limit.precision, only=only),
-                first=preferred_angles(query),
+                first=list_preferred_angles(query),
                 rest=not only,
             )
-            for near, only in ((limit.square, preferred_angles(query)), (limit.aslant, []))
+            for near, only in ((limit.square, list_preferred_angles(query)), (limit.aslant, []))
         ]
         # What lies between two shares may be found in both.
         assert sum(((one <= most) & ok).sum() for one, ok in parts) >= (errors[fine] <= most).sum()
@@ -295,7 +297,7 @@ def test_the_distance_from_a_hull_is_that_of_its_nearest_point(
 @pytest.mark.parametrize("part", ["flange", "arcs", "bores"])
 def test_what_lies_square_is_found_with_the_curves_that_come_there(part: str) -> None:
     query = Query(PARTS[part], KITS["plate"], tolerance=TOLERANCE, best=5)
-    problem, first = Problem.of(query), preferred_angles(query)
+    problem, first = Problem.of(query), list_preferred_angles(query)
     whole, some = (ToolkitSearch.of(problem, only=only) for only in ((), first))
     assert len(some.table) < len(whole.table)
     one, other = (
@@ -310,7 +312,7 @@ def test_the_next_limit_is_no_larger_than_it_must_be() -> None:
     """A tenth above the last one that is asked for is enough; without enough found it grows, at last without end."""
     query = Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE, best=5)
     table = answer(Query(PARTS["flange"], KITS["plate"], tolerance=TOLERANCE)).table
-    keys = order_keys(table, query, usual_errors(query))
+    keys = order_keys(table, query, find_usual_errors(query))
     assert keys.error is not None and keys.is_fine.sum() > 5
     last = float(np.sort(keys.error[keys.is_fine])[4]) / PER_MM
     least = float(keys.error.min()) / PER_MM

@@ -19,7 +19,7 @@ from workhold import Fence, Fixture, InputError, Load, Plate, Query, Vise, desig
 from workhold.algebra import find_fixtures_by_algebra
 from workhold.contact.features import list_contact_features
 from workhold.files.toolkit_file import load_toolkit
-from workhold.fixels.pegs import Flat, flat_of, standoff
+from workhold.fixels.pegs import Flat, compute_standoff, convert_flat
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.offset import list_trimmed_offsets
 from workhold.geometry.segment import Arc, Line
@@ -192,7 +192,7 @@ def test_keeping_their_place() -> None:
     """A vise's and a plate's flat, in what way it is given; and what is refused."""
     wide = Vise(9, 2, 3, flat=1.5)
     assert wide.flat == Flat(1.5, sqrt(9 - 2.25)) and Vise(9, 2, 3, flat=(1.5, 1)).flat == Flat(1.5, 1.0)
-    assert flat_of({"distance": 2, "half_width": 1}) == Flat(2.0, 1.0) and flat_of(None) is None
+    assert convert_flat({"distance": 2, "half_width": 1}) == Flat(2.0, 1.0) and convert_flat(None) is None
     assert evolve(wide, columns=3).flat == wide.flat
     for value, words in (
         (3.5, "a peg of radius 3 mm cannot have a flat 3.5 mm from its centre"),
@@ -266,7 +266,11 @@ def test_forces_act_where_the_flat_lies() -> None:
     line, arc = (
         next(f.segment for f in part(EAR).faces if isinstance(f.segment, kind)) for kind in (Line, Arc)
     )
-    assert (standoff(3.0, Flat(1.5), line), standoff(3.0, Flat(1.5), arc), standoff(3.0, None, line)) == (
+    assert (
+        compute_standoff(3.0, Flat(1.5), line),
+        compute_standoff(3.0, Flat(1.5), arc),
+        compute_standoff(3.0, None, line),
+    ) == (
         1.5,
         3.0,
         3.0,

@@ -22,7 +22,7 @@ from judged import rules_in
 from strategies import outline
 from toolkit_results import assert_all_proven, part, verify_edited
 from workhold import Fixture, FlatJaw, InputError, Load, Query, Result, Workpiece
-from workhold.fixels.kinds import toolkit_of
+from workhold.fixels.kinds import make_toolkit
 from workhold.search.design import Explored, explore, first_choice
 from workhold.search.explaining import explain
 from workhold.verification.ball_geometry import BallOutline
@@ -242,7 +242,7 @@ def test_why_a_jaw_holds_nothing_names_its_width() -> None:
     assert removal.before > 0 and removal.after == 0
     helps = {help.change: help for help in said.helps}
     assert helps["with a flat jaw as wide as the part"].fields == {"jaw_width": None}
-    assert toolkit_of("flat-jaw", {"pitch": 40, "peg_radius": 2, "columns": 2}).limits[0].lifted.words == (
+    assert make_toolkit("flat-jaw", {"pitch": 40, "peg_radius": 2, "columns": 2}).limits[0].lifted.words == (
         "with as many columns as needed"
     )
 
@@ -279,13 +279,13 @@ def test_verify_refutes_what_the_jaw_does_not_reach_and_other_columns(tmp_path: 
     )
     jaw, fixture = rules_in(wide.toolkit).jaw, wide[number]
     assert jaw is not None
-    outline, pose = BallOutline.of(wide.workpiece), BallPose.written(fixture.pose)
+    outline, pose = BallOutline.from_workpiece(wide.workpiece), BallPose.from_written(fixture.pose)
     columns, left, right = [peg.column for peg in fixture.pegs[2:]], *fixture.pegs[:2]
     acts = arb(left.force * left.x + right.force * right.x)
-    assert list(jaw.findings(columns, acts, outline, pose)) == []
+    assert list(jaw.judge(columns, acts, outline, pose)) == []
     off = evolve(pose, x=pose.x - vise.pitch[0])
     beside = [column - 1 for column in columns]
-    reasons = [one.reason for one in jaw.findings(beside, acts - vise.pitch[0], outline, off)]
+    reasons = [one.reason for one in jaw.judge(beside, acts - vise.pitch[0], outline, off)]
     assert any("mm of the part there" in reason for reason in reasons), reasons
 
     def stretched(content: dict[str, Any]) -> None:

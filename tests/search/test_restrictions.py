@@ -24,7 +24,7 @@ from workhold import (
     polygon_zone,
 )
 from workhold.algebra import find_fixtures_by_algebra
-from workhold.fixels.carrier import holes_named
+from workhold.fixels.carrier import parse_hole_name
 
 Key = tuple[object, float]
 
@@ -151,7 +151,7 @@ def test_angles_are_kept(free: Result, angles: tuple[tuple[float, float], ...]) 
 )
 def test_no_peg_stands_in_a_blocked_hole(free: Result, rows: int | None, names: list[str]) -> None:
     """A fixture is left exactly when it, or for Type I its half turn, can be shifted to holes that are free."""
-    blocked = tuple(holes_named(name, ("left", "right"), "jaw") for name in names)
+    blocked = tuple(parse_hole_name(name, ("left", "right"), "jaw") for name in names)
     limited = design(free.workpiece, vise(rows=rows, blocked=blocked))
     for fixture in limited:
         for peg in fixture.pegs:

@@ -18,7 +18,7 @@ import pytest
 import workhold
 from seating_examples import solved
 from workhold import InputError, OpeningVise, Plate, Query, Result, Vise, Workpiece
-from workhold.files.result.fixture_forms import seating_figures_of
+from workhold.files.result.fixture_forms import collect_seating_figures
 from workhold.kernels.seating.columns import PEG, PLACE_X, SEPARATION, THETA
 from workhold.model.notes import PushedByHand
 from workhold.model.quality import FIGURE_RANKING, SEATING_FIGURES
@@ -126,7 +126,7 @@ def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> 
         untold.warnings == ("it is not known how far you may open without losing the part",)
         and untold.figures["placing"] == 0.0
     )
-    assert seating_figures_of(untold.as_fields())["placing"] == 0.0
+    assert collect_seating_figures(untold.as_fields())["placing"] == 0.0
     free = attrs.evolve(one, capture_opening=None)
     assert not free.warnings and free.catches(1e9) and free.figures["capture_opening"] == inf
     assert not one.catches(one.capture_opening or 0.0) and one.catches(0.999 * (one.capture_opening or 0.0))

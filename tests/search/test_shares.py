@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from workhold import Result, Vise, design, load
-from workhold.files.result.writer import result_text
+from workhold.files.result.writer import write_result_text
 from workhold.search import shares
 
 
@@ -25,7 +25,7 @@ def identity(fixture: Any) -> tuple[Any, ...]:
 def text(result: Result) -> str:
     """The result file."""
     stream = StringIO()
-    stream.writelines(result_text(result))
+    stream.writelines(write_result_text(result))
     return stream.getvalue()
 
 

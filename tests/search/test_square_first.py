@@ -28,7 +28,7 @@ from workhold import (
 from workhold.contact.problem import Problem
 from workhold.conventions import SQUARE_TILT
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.bounds import preferred_angles
+from workhold.listing.bounds import list_preferred_angles
 from workhold.listing.collector import Needed
 from workhold.model.notes import BestOnly
 from workhold.model.quality import TILT
@@ -130,7 +130,7 @@ def test_the_first_blocks_and_the_rest_find_everything(loose: bool, monkeypatch:
         monkeypatch.setattr("workhold.search.toolkit_search.VAGUE", 0.0)
     query = Query(cad_part(0), VISE)
     search = ToolkitSearch.of(Problem.of(query))
-    angles = preferred_angles(query)
+    angles = list_preferred_angles(query)
     everything = make_records(search)
     first, rest = (make_records(search, first=angles, rest=rest) for rest in (False, True))
     assert np.array_equal(np.unique(np.concatenate([first, rest]), axis=0), everything)

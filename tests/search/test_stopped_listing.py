@@ -16,7 +16,7 @@ import workhold
 from workhold import Query, Result, Vise
 from workhold.cli import outputs
 from workhold.cli.ending import Interrupted
-from workhold.files.result.writer import notes_entry
+from workhold.files.result.writer import make_notes_entry
 from workhold.listing import collector, runs
 from workhold.listing.collector import ResultCollector
 from workhold.listing.results import MEASURED
@@ -155,7 +155,7 @@ def test_a_file_that_was_cut_short_must_say_so(tmp_path: Path) -> None:
     said = json.loads((tmp_path / "a.json").read_text())
     found = sum(said["found"].values())
     assert verify_file(tmp_path / "a.json").holds
-    for wrong in ({"complete": True}, notes_entry([]), notes_entry([Cut(found, MOST + 1)])):
+    for wrong in ({"complete": True}, make_notes_entry([]), make_notes_entry([Cut(found, MOST + 1)])):
         (tmp_path / "b.json").write_text(json.dumps(said | wrong))
         assert not verify_file(tmp_path / "b.json").holds
     workhold.save(workhold.answer(SYMMETRIC).cut_short(found), tmp_path / "b.json")

@@ -105,14 +105,14 @@ def test_a_cancel_in_the_search_keeps_what_was_found(small: None, tmp_path: Path
 def test_a_cancel_while_fixtures_are_measured_keeps_the_first_of_them(
     small: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    cancel, measured = Event(), ResultCollector.measured_part
+    cancel, measured = Event(), ResultCollector.measure_part
 
     def stopping(self: ResultCollector, numbered: Any) -> Any:
         if numbered[0] == 2:
             cancel.set()
         return measured(self, numbered)
 
-    monkeypatch.setattr(ResultCollector, "measured_part", stopping)
+    monkeypatch.setattr(ResultCollector, "measure_part", stopping)
     monkeypatch.setattr("workhold.proof.deciding.GRACE", 0.0)
     result = workhold.answer_to_file(QUERIES["symmetric"], tmp_path / "a.npz", cancel=cancel, threads=1)
     assert not result.complete

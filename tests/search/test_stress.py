@@ -38,7 +38,7 @@ def resting_on(result: Result, *faces: int) -> int:
     """How many fixtures have one jaw's pegs on all the given faces."""
     table = result.table
     count = 0
-    for jaws, touched in zip(result.toolkit.peg_carriers(table.arrangement), table.face, strict=True):
+    for jaws, touched in zip(result.toolkit.find_peg_carriers(table.arrangement), table.face, strict=True):
         count += any(set(faces) <= set(touched[jaws == jaw].tolist()) for jaw in (0, 1))
     return count
 
@@ -391,7 +391,7 @@ def test_a_ring_held_from_inside_and_outside() -> None:
     assert result.counts == {"I": 14, "II": 26}
     inside = result.table.face == 2
     assert (inside.sum(axis=1) == 2).all()
-    on_left = (inside & (vise.peg_carriers(result.table.arrangement) == 0)).sum(axis=1)
+    on_left = (inside & (vise.find_peg_carriers(result.table.arrangement) == 0)).sum(axis=1)
     assert (on_left[result.table.arrangement == 0] == 1).sum() == 2
     assert_holds(result)
     assert_engines_agree(result)

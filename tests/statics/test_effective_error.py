@@ -121,7 +121,7 @@ def test_verification_finds_the_same_factors(kind: str) -> None:
     judge = EffectiveJudge(query, result.least_effective_error)
     marks = effective.holding(result.table)
     for fixture, row in zip(result, marks, strict=True):
-        said = [ends for _, ends in judge.factors(fixture)]
+        said = [ends for _, ends in judge.list_factors(fixture)]
         assert all(
             surely <= bool(mark) <= perhaps
             for (surely, perhaps), mark in zip(said, row.tolist(), strict=True)

@@ -11,7 +11,7 @@ from workhold import Load, Result, Workpiece
 from workhold.conventions import GENTLE_PEG, SMALL_FACE_POINTS, STRONG_POINTS, TILTED_POINTS
 from workhold.drawing import SheetDetails
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.sheet_facts import cautions_of, edge_distances
+from workhold.drawing.sheet_facts import list_cautions, measure_edge_distances
 from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.quality import (
     CLAMP_AMPLIFICATION,
@@ -41,10 +41,10 @@ def test_the_sheet_warns_as_often_as_the_table_counts(result: Result) -> None:
     for fixture, count in zip(result, counts, strict=True):
         cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
         details = SheetDetails(**SHEET, jaw_force=force, loads=cases)  # type: ignore[arg-type]
-        distances = edge_distances(fixture, result.workpiece, result.toolkit)
+        distances = measure_edge_distances(fixture, result.workpiece, result.toolkit)
         kinds = [
             caution.kind
-            for caution in cautions_of(fixture, result.toolkit, distances, details, LengthUnit.mm())
+            for caution in list_cautions(fixture, result.toolkit, distances, details, LengthUnit.in_mm())
         ]
         assert len([kind for kind in kinds if kind not in ("unfit", "pose")]) == count
 

@@ -12,7 +12,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold import Fixture, Query, Result, Vise, Workpiece, circle_zone
-from workhold.files.result.reader import checked_table, collected, measured
+from workhold.files.result.reader import add_missing_figures, check_table, collect_columns
 from workhold.model.support_request import SpatialLoad, SupportRequest
 
 TRUTH = Path(__file__).parent / "truth"
@@ -40,8 +40,8 @@ def case_of(name: str, truth: dict[str, Any]) -> Case:
     """The case that a file of a complete set describes."""
     vise = {**truth["vise"], "pitch": tuple(truth["vise"]["pitch"])}
     query = Query(Workpiece.from_loops(name, truth["workpiece"]["loops"]), Vise(**vise))
-    table = measured(checked_table(collected([truth["fixture"]], TRUTH), query, TRUTH), query)
-    counts = query.toolkit.arrangements_counted(table.arrangement)
+    table = add_missing_figures(check_table(collect_columns([truth["fixture"]], TRUTH), query, TRUTH), query)
+    counts = query.toolkit.count_arrangements(table.arrangement)
     fixture = Result(query, table, found=counts, distinct=counts)[0]
     heights, pads, clamp = truth["heights"], truth["supports"], truth["clamp"]
     request = SupportRequest(

@@ -9,13 +9,13 @@ import workhold
 from own_heights import BASE, stepped
 from shown_words import last_paragraph
 from workhold import Vise
-from workhold.cli.supports_command import notes_of as notes_of_command
+from workhold.cli.supports_command import list_support_notes as notes_of_command
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.model.support_triples import Supports
 from workhold.supports.listing import supports_of
 from workhold.supports.words import place_notes, write_flat_faces_notes
-from workhold.units import unit_named
-from workhold.web.support_tasks import notes_of as notes_of_page
+from workhold.units import find_unit
+from workhold.web.support_tasks import list_support_notes as notes_of_page
 
 LOAD = SpatialLoad(points=[[20, 15]], force=150.0)
 
@@ -37,7 +37,7 @@ def found() -> Supports:
 def test_both_say_the_same(found: Supports) -> None:
     """Closing force, openings, and what is taken to be flat; in the unit that is asked for."""
     page = notes_of_page(found, "mm")
-    command = notes_of_command(found, found.triples, unit_named("mm"))
+    command = notes_of_command(found, found.triples, find_unit("mm"))
     assert len(page) == 3 and "closing force" in page[0] and "opened to" in page[1]
     assert command[-3:-1] == page[:2]
     assert (
@@ -47,7 +47,7 @@ def test_both_say_the_same(found: Supports) -> None:
         == (page[2])
     )
     assert "bottom and top" in page[2]
-    assert unit_named("inch").text(found.triples[0].travel) in notes_of_page(found, "inch")[1]
+    assert find_unit("inch").format_length(found.triples[0].travel) in notes_of_page(found, "inch")[1]
 
 
 def test_nothing_is_said_of_what_is_not_there(found: Supports) -> None:

@@ -15,7 +15,7 @@ from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.supports.clamp_point import ClampPlaces
 from workhold.supports.faces import LevelRegions, TouchableFace
 from workhold.supports.listing import supports_of
-from workhold.verification.support_listing import room_on
+from workhold.verification.support_listing import measure_room_on
 from workhold.verification.supports import verify_supports_file
 
 KITE = Workpiece.from_loops("kite", [[[0, 0, 0], [70, -8, 0.1], [88, 40, 0], [22, 66, 0]]])
@@ -93,7 +93,7 @@ def test_loops_side_by_side_are_faces_of_their_own() -> None:
     points = np.array([[10.0, 10.0], [25.0, 10.0], [40.0, 5.0], [35.0, 5.0], [18.0, 10.0]])
     expected = [10.0, -5.0, 4.0, -1.0, 2.0]
     assert face.room(points).tolist() == expected
-    assert [room_on([one, other, opening], [], (x, y)) for x, y in points.tolist()] == expected
+    assert [measure_room_on([one, other, opening], [], (x, y)) for x, y in points.tolist()] == expected
     low, high = face.box
     assert (low.tolist(), high.tolist()) == ([0.0, 0.0], [50.0, 20.0])
 
@@ -108,7 +108,7 @@ def test_faces_that_meet_and_the_top_of_a_boss_are_faces_of_their_own() -> None:
     expected = [3.5, 3.0, 8.0, 2.5, 0.0, -10.0]
     for loops in ([floor, around, boss, step], [step, boss, floor, around], [boss, around, step, floor]):
         assert TouchableFace.of(loops).room(np.array(points)).tolist() == expected
-        assert [room_on(loops, [], point) for point in points] == expected
+        assert [measure_room_on(loops, [], point) for point in points] == expected
     pocket = [floor[::-1], [[2, 2, 0], [18, 2, 0], [18, 18, 0], [2, 18, 0]], around[::-1]]
     inside = [[2, 18, 0], [18, 18, 0], [18, 2, 0], [2, 2, 0]]
     assert TouchableFace.of(pocket).room(np.array(points[:2])).tolist() == [-7.5, -1.0]
@@ -116,7 +116,7 @@ def test_faces_that_meet_and_the_top_of_a_boss_are_faces_of_their_own() -> None:
         -3.5,
         1.0,
     ]
-    assert room_on([floor, inside, pocket[1], around], [], points[0]) == -3.5
+    assert measure_room_on([floor, inside, pocket[1], around], [], points[0]) == -3.5
 
 
 def test_a_file_of_supports_has_the_outlines_of_carriers(tmp_path: Path) -> None:

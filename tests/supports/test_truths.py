@@ -126,7 +126,7 @@ def test_triples_are_checked_one_by_one_as_they_are_read(
     path = tmp_path / "supports.json"
     write_supports(found, path)
     forms = []
-    usual = TripleReader.checked
+    usual = TripleReader.read_triple
     monkeypatch.setattr(
         TripleReader, "checked", lambda self, entry: (forms.append(self.count), usual(self, entry))[1]
     )

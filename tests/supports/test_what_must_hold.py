@@ -171,10 +171,10 @@ def test_at_the_clamp_force_needed_no_support_pulls_and_one_is_about_to_let_go(n
     judge = SupportsJudge(one.query, one.fixture, everything.request, everything.loads, one.jaw_force)
     needed = 0
     for triple in everything.triples:
-        solved = judge.balances([(pad.x, pad.y) for pad in triple.supports])
-        least, most = judge.extremes(solved)
+        solved = judge.solve_balances([(pad.x, pad.y) for pad in triple.supports])
+        least, most = judge.find_extremes(solved)
         for figures in filter(None, (triple.best, triple.given)):
-            clamped = figures.clamp_needed * judge.shares(solved, figures.at)
+            clamped = figures.clamp_needed * judge.compute_shares(solved, figures.at)
             slack = 1e-7 * max(figures.clamp_needed, abs(most).max())
             assert (clamped + least).min() >= -slack
             assert (clamped + most).max() == pytest.approx(figures.support_force, rel=1e-6)

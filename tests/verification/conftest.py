@@ -14,7 +14,7 @@ import pytest
 
 from toolkit_results import verify_edited
 from workhold import Result, Vise, design, load
-from workhold.files.result.writer import result_text
+from workhold.files.result.writer import write_result_text
 from workhold.model.quality import TILT
 from workhold.verification import Verification
 
@@ -39,7 +39,7 @@ def widget_result() -> Result:
 def widget_data(widget_result: Result) -> Data:
     """The JSON of that result's file."""
     stream = io.StringIO()
-    stream.writelines(result_text(widget_result))
+    stream.writelines(write_result_text(widget_result))
     data: Data = json.loads(stream.getvalue())
     return data
 

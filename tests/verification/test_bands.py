@@ -11,7 +11,7 @@ import workhold
 from own_heights import BASE, HEIGHT, STEM, stepped
 from workhold import Fixture, Plate, Query, Result, Vise
 from workhold.model.support_request import SupportRequest
-from workhold.verification.supports import band_faults
+from workhold.verification.supports import find_band_faults
 
 # A band for each side of the base, no two alike.
 BANDS = [(float(k), 5.0 + k) for k in range(len(BASE))]
@@ -28,7 +28,7 @@ def result() -> Result:
 def faults(query: Query, fixture: Fixture, bands: Any, thickness: float = HEIGHT) -> list[str]:
     """What is wrong with some bands."""
     request = evolve(SupportRequest.of(query.workpiece, thickness), bands=bands)
-    return list(band_faults(query, fixture, request))
+    return list(find_band_faults(query, fixture, request))
 
 
 def spanned(fixture: Fixture, most: float = HEIGHT) -> list[tuple[float, float]]:

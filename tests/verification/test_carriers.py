@@ -21,7 +21,7 @@ def place(toolkit: Toolkit, carrier: str, column: int, row: int) -> tuple[float,
 
 def way(toolkit: Toolkit, carrier: str) -> tuple[float, float]:
     """Along which it moves what stands there."""
-    return ToolkitRules(toolkit).way(Peg(carrier, 0, 0, 0.0, 0.0, 0, 0.0))
+    return ToolkitRules(toolkit).find_way(Peg(carrier, 0, 0, 0.0, 0.0, 0, 0.0))
 
 
 @pytest.mark.parametrize("kind", [Vise, OpeningVise])
@@ -85,7 +85,7 @@ def test_clamps_stand_in_order_and_on_lines_that_count_from_the_first_hole() -> 
     ):
         clamps = [Peg("clamp -x", 0, row, 0.0, 20.0 * row, 3, 0.1) for row in rows]
         fixture = Fixture("clamp2", (*locators, *clamps), Pose(0.0, 0.0, 0.0), 0.0, {}, "-x -x", pair)
-        assert [found.reason for found in ToolkitRules(plate).asked_findings(fixture)] == words
+        assert [found.reason for found in ToolkitRules(plate).judge_question(fixture)] == words
     for column, words in (
         (0, []),
         (1, ["the place of a clamp on its line is not counted from the plate's first hole"]),

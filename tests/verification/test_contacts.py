@@ -18,7 +18,7 @@ from judged import posed, rules_in
 from strategies import seeds
 from workhold import Vise
 from workhold.verification.ball_geometry import Point
-from workhold.verification.contacts import Balance, closure_findings, minors, span
+from workhold.verification.contacts import Balance, compute_minors, judge_closure, measure_wrench_span
 
 # The part as it is drawn.
 HARDWARE = rules_in(Vise(pitch=10, columns=1, peg_radius=0))
@@ -37,7 +37,7 @@ def test_the_null_vector_balances_forces_and_moments(seed: int) -> None:
     places, angles = make_random_contacts(Random(seed))
     points = [(arb(x), arb(y)) for x, y in places]
     normals = [(arb(angle).cos(), arb(angle).sin()) for angle in angles]
-    vector = minors(points, normals)
+    vector = compute_minors(points, normals)
     for component in (0, 1):
         assert sum((v * n[component] for v, n in zip(vector, normals, strict=True)), arb(0)).contains(0)
     moments = [p[0] * n[1] - p[1] * n[0] for p, n in zip(points, normals, strict=True)]
@@ -49,7 +49,7 @@ def test_it_is_that_of_the_statics(seed: int) -> None:
     """Point and scale of the moments do not matter to it."""
     places, angles = make_random_contacts(Random(seed))
     points = [(arb(x), arb(y)) for x, y in places]
-    vector = minors(points, [(arb(angle).cos(), arb(angle).sin()) for angle in angles])
+    vector = compute_minors(points, [(arb(angle).cos(), arb(angle).sin()) for angle in angles])
     total = sum(vector, arb(0))
     if abs(float(total)) < 1e-3:
         return
@@ -63,7 +63,7 @@ def test_three_normals_through_one_point_leave_nothing_to_the_fourth() -> None:
     """Its share is the determinant of three concurrent lines, 0 at every precision."""
     directions = [(arb(3) / 5, arb(4) / 5), (arb(-5) / 13, arb(12) / 13), (arb(8) / 17, arb(-15) / 17)]
     points = [(7 + 21 * x, -2 + 21 * y) for x, y in directions] + [(arb(30), arb(4))]
-    vector = minors(points, [*directions, (arb(1), arb(0))])
+    vector = compute_minors(points, [*directions, (arb(1), arb(0))])
     assert vector[3].contains(0)
     assert not vector[0].contains(0)
 
@@ -81,11 +81,11 @@ class FixedContact:
         """The touched side: it has one normal everywhere."""
         return self
 
-    def in_part(self, pose: object) -> tuple[arb, arb]:
+    def compute_center_in_part(self, pose: object) -> tuple[arb, arb]:
         """The contact's place in the part."""
         return self.place
 
-    def outward(self, point: object) -> tuple[arb, arb]:
+    def compute_outward_normal(self, point: object) -> tuple[arb, arb]:
         """The outward normal."""
         return self.normal
 
@@ -101,9 +101,9 @@ def test_the_span_is_that_of_wrenches_whose_moments_are_over_the_length_of_the_p
             FixedContact((offset * x, offset * y), (arb(n), arb(m)), (int(k > 1), 0))
             for k, ((x, y), (n, m)) in enumerate(ways)
         ]
-        balance = Balance.of(contacts, UPRIGHT, 1)  # type: ignore[arg-type]
+        balance = Balance.from_contacts(contacts, UPRIGHT, 1)  # type: ignore[arg-type]
         words = [
-            found.reason for found in closure_findings(balance, length, HARDWARE.names, HARDWARE.slack_words)
+            found.reason for found in judge_closure(balance, length, HARDWARE.names, HARDWARE.slack_words)
         ]
         assert any("their wrenches span only" in reason for reason in words) == (not spans)
 
@@ -137,10 +137,10 @@ def test_minors_and_span_are_the_exact_ones(seed: int) -> None:
         (*n, (q[0] * n[1] - q[1] * n[0]) / Fraction(length)) for q, n in zip(places, normals, strict=True)
     ]
     exact = [determinant(list(three)) for three in reversed(list(combinations(wrenches, 3)))]
-    vector = minors([balls(q) for q in places], [balls(n) for n in normals])
+    vector = compute_minors([balls(q) for q in places], [balls(n) for n in normals])
     for number, (entry, minor) in enumerate(zip(vector, exact, strict=True)):
         assert agree(entry / length, minor * (-1) ** number)
-    assert agree(span(vector, length), sum((abs(minor) for minor in exact), Fraction(0)))
+    assert agree(measure_wrench_span(vector, length), sum((abs(minor) for minor in exact), Fraction(0)))
 
 
 def balls(pair: tuple[Fraction, Fraction]) -> Point:

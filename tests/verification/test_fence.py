@@ -22,7 +22,7 @@ from workhold.search.wall_contacts import PinContacts
 from workhold.search.wall_search import WallSearch
 from workhold.verification import Verification, verify, verify_fixture
 from workhold.verification.ball_geometry import BallOutline
-from workhold.verification.rules.wall import flush_findings, wall_contacts
+from workhold.verification.rules.wall import flush_findings, make_wall_contacts
 
 Data = dict[str, Any]
 Edit = Callable[[Data], object]
@@ -286,8 +286,8 @@ def test_a_foot_beyond_the_ends_that_are_told_is_found() -> None:
         [48, 0, 0],
     ]
     workpiece = part([*feet, [56, 0, 0], [50, 30, 0], [4, 34, 0]])
-    outline, pose = BallOutline.of(workpiece), posed(0)
-    left, right = wall_contacts([outline.faces[0], outline.faces[8]], outline, pose)
+    outline, pose = BallOutline.from_workpiece(workpiece), posed(0)
+    left, right = make_wall_contacts([outline.faces[0], outline.faces[8]], outline, pose)
     inner = evolve(right, piece=evolve(right.piece, center=outline.faces[5].start), faces=(4,))
     pegs = [workhold.Peg("wall", 0, 0, x, 0.0, face, 0.5) for x, face in ((0.0, 0), (56.0, 8), (32.0, 4))]
     whole = [("left", pegs[0], left), ("right", pegs[1], right)]

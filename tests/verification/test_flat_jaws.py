@@ -136,11 +136,11 @@ def test_opening_beyond_the_vise_and_angles_not_asked_for():
 
 def test_load_that_no_force_holds_is_none_in_both():
     point = Patch(((0.0, 0.0, 0.0, 20.0),), (0,))
-    held_by_lines = HeldBetweenJaws.of(point, point, 40.0, 0.1, [], 1.0)
-    assert held_by_lines.force_needed((0.0, 20.0, 10.0), (50.0, 0.0, 0.0), 0.0) == pytest.approx(
+    held_by_lines = HeldBetweenJaws.from_patches(point, point, 40.0, 0.1, [], 1.0)
+    assert held_by_lines.compute_needed_force((0.0, 20.0, 10.0), (50.0, 0.0, 0.0), 0.0) == pytest.approx(
         250.0, rel=1e-6
     )
-    assert held_by_lines.force_needed((0.0, 20.0, 0.0), (0.0, 0.0, -50.0), 0.0) == pytest.approx(
+    assert held_by_lines.compute_needed_force((0.0, 20.0, 0.0), (0.0, 0.0, -50.0), 0.0) == pytest.approx(
         0.0, abs=1e-6
     )
 

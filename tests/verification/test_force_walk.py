@@ -47,13 +47,13 @@ def test_the_walk_agrees_with_the_closed_form(seed: int, direction: CuttingDirec
     random = Random(seed)
     program = with_forces(random_program(random, random_outline(random, 6)), direction)
     assert program.forces is not None
-    walk, path = ForceWalk.of(program, program.forces), path_forces(program, (0.0, 0.0))
+    walk, path = ForceWalk.from_program(program, program.forces), path_forces(program, (0.0, 0.0))
     functions = np.random.default_rng(seed).normal(size=(20, 3)) / [1, 1, 40]
     found = path.worst(functions[:, None])
     for k, (a, b, c) in enumerate(functions.tolist()):
-        ball = walk.worst(arb(a), arb(b), arb(c))
+        ball = walk.find_worst(arb(a), arb(b), arb(c))
         assert ball.overlaps(arb(found.value[k], 1e-9 * found.value[k])) and ball.rad() < 1e-6
-        wide = walk.worst(arb(a, 1e-3), arb(b), arb(c))
+        wide = walk.find_worst(arb(a, 1e-3), arb(b), arb(c))
         assert wide.contains(ball.mid()) and (wide.rad() > 1e-4 or not program.forces.force.any())
 
 

@@ -23,8 +23,8 @@ from workhold.fixels.support_hardware import PinLimits
 from workhold.fixels.toolkit import Arrangement, Carrier, Limit, Symmetry, Toolkit, Travel
 from workhold.geometry.segment import Line, measure_distance_to_segment
 from workhold.verification import Ruling, verify_fixture
-from workhold.verification.reading import fixtures_of
-from workhold.verification.repeats import stance
+from workhold.verification.reading import read_fixtures
+from workhold.verification.repeats import describe_stance
 from workhold.verification.seating import stop_of
 
 Data = dict[str, Any]
@@ -82,8 +82,8 @@ class Known:
 
     def read(self, item: Data) -> Fixture:
         """A fixture from its JSON object."""
-        (fixture,) = fixtures_of([item], Path("truth"))
-        return rules_in(self.toolkit).taken(fixture)
+        (fixture,) = read_fixtures([item], Path("truth"))
+        return rules_in(self.toolkit).complete_fixture(fixture)
 
     def ruling(self, item: Data, **fields: Any) -> Ruling:
         """What is shown of a fixture, perhaps in a toolkit with other fields."""
@@ -296,7 +296,7 @@ def test_its_seating_knows_where_it_stops_and_which_pegs_stand_alike(known: Know
     for item in known.items:
         fixture = known.read(item)
         assert stop_of(fixture.pegs, known.toolkit, fixture.travel) == pytest.approx(3.0)
-        here = stance(fixture, known.toolkit)
+        here = describe_stance(fixture, known.toolkit)
         assert here.anchor == (0.0, 0.0) and here.apart == pytest.approx(
             min((p["x"], p["y"]) for p in item["pegs"])[1]
         )

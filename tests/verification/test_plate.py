@@ -30,8 +30,8 @@ from workhold import (
     circle_zone,
     design,
 )
-from workhold.files.result.writer import notes_entry
-from workhold.listing.results import joined_ways
+from workhold.files.result.writer import make_notes_entry
+from workhold.listing.results import join_ways
 from workhold.model.notes import STAGES, LeftUndecided, NoFixture
 from workhold.model.quality import FIGURE_RANKING
 from workhold.model.search_report import GIVEN_UP, Undecided
@@ -269,7 +269,7 @@ def test_the_account_is_held_to_what_is_listed(edited: Any) -> None:
     assert "is better than the one before it" in told(lambda content: content["fixtures"].reverse())
     assert "candidates, but" in told(lambda content: content["proof"].update(verified=3))
     reasons = [NoFixture(stage, LIMITED.wording) for stage in STAGES]
-    wrong = notes_entry(reasons[3:])
+    wrong = make_notes_entry(reasons[3:])
     assert "does not follow" in told(lambda content: [content[key].extend(wrong[key]) for key in wrong])
     assert "jaw" not in "".join(map(str, reasons)) and "gap" not in str(reasons[3])
 
@@ -322,7 +322,7 @@ def bolted_in(fixture: Fixture, hole: tuple[int, int], plate: Plate) -> Fixture:
         for peg in fixture.pegs
         for column, row in [hole if peg is fixture.pegs[3] else (peg.column, peg.row)]
     ]
-    clamp, carrier = moved[3], plate.carrier(moved[3].carrier)
+    clamp, carrier = moved[3], plate.find_carrier(moved[3].carrier)
     at_hole = carrier.place(clamp.column, clamp.row)
     along, across = carrier.travel.unit  # type: ignore[union-attr]
     travel = (clamp.x - at_hole[0]) * along + (clamp.y - at_hole[1]) * across
@@ -434,10 +434,10 @@ def test_a_clamp_keeps_its_distance_from_locators(
         workhold.Peg("clamp -x", 6, 0, 50.0, 0.0, 0, 1.0),
     ]
     fixture = Fixture("clamp", tuple(pegs), Pose(0.0, 0.0, 0.0), -10.0, {}, "-x")
-    outline = BallOutline.of(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
-    contacts = [hardware.contact(peg, outline.faces[0]) for peg in pegs]
+    outline = BallOutline.from_workpiece(part([[x + 500.0, y, b] for x, y, b in NOTCHED]))
+    contacts = [hardware.make_contact(peg, outline.faces[0]) for peg in pegs]
     at = posed(-10)
-    said = [found.reason for found in hardware.standing_findings(fixture, contacts, at, outline)]
+    said = [found.reason for found in hardware.judge_standing(fixture, contacts, at, outline)]
     # It could be bolted at its tip, in F1.
     assert [reason for reason in said if "locator 3" in reason] == [
         reason for reason in said if "meets" in reason
@@ -516,14 +516,14 @@ def test_results_of_several_directions_say_what_is_so_of_all() -> None:
         )
         for r in (one, other)
     ]
-    both = joined_ways(lost, query)
+    both = join_ways(lost, query)
     assert both.notes == (LeftUndecided(2),)
     assert verify(both).faults == ()
     reason, counts = (NoFixture("hold", LIMITED.wording),), {"clamp": 0}
     none = attrs.evolve(one, table=one.table.take(slice(0, 0)), found=counts, distinct=counts, notes=reason)
-    assert joined_ways([none, other], query).notes == ()
+    assert join_ways([none, other], query).notes == ()
     nothing = [attrs.evolve(none, proof=attrs.evolve(one.proof, verified=0))] * 2
-    assert joined_ways(nothing, query).notes == reason
+    assert join_ways(nothing, query).notes == reason
 
 
 def agrees_with_the_checker(seed: int, path: Path) -> int:

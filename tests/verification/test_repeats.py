@@ -93,7 +93,7 @@ def test_one_set_when_a_rotation_carries_one_to_the_other(
 ) -> None:
     """The rotation is known to the millionths by which a drawing may miss its symmetry; so much may the fixtures differ
     that it carries into each other."""
-    monkeypatch.setattr(repeats, "patterns", one_pattern)
+    monkeypatch.setattr(repeats, "list_patterns", one_pattern)
     seen = KnownFixtures(rules_in(Vise(pitch=10, columns=1, peg_radius=0)), [pi / 2], (10.0, -4.0))
     image = [0.5 + pi / 2, 10.0 + 7.0, -4.0 - 20.0, 33.0]
     image[number] += off

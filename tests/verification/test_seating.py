@@ -14,22 +14,22 @@ import pytest
 import workhold
 from toolkit_results import verify_edited
 from workhold import Fence, OpeningVise, Peg, Plate, Pose, Result, Vise, Workpiece
-from workhold.completeness import first_other
+from workhold.completeness import find_first_difference
 from workhold.fixels.carrier import WALL
 from workhold.seating.solver import Solver
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.judging import order_faults
 from workhold.verification.listing import Listing, claim_of, read_listing
-from workhold.verification.repeats import pattern_faults, stance
+from workhold.verification.repeats import describe_stance, find_pattern_faults
 from workhold.verification.seating import (
     FloatOutline,
     PartPlacement,
     SeatingJudge,
     StatedSeating,
+    make_wall_contact,
     stop_of,
-    touching_wall,
 )
-from workhold.verification.verify import not_shown
+from workhold.verification.verify import list_not_shown
 
 WEDGE = Workpiece.from_loops("wedge", [[[0, 0, 0], [70, 0, 0], [25, 55, 0]]])
 # With an arc, an inner corner and loose rest.
@@ -77,7 +77,7 @@ def fault(listing: Listing, judge: SeatingJudge, change: Callable[[Fields], Any]
     fields = deepcopy(dict(fixture.seating.fields))
     change(fields)
     claim = attrs.evolve(fixture.seating, fields=fields, seating=told(fields, fixture))
-    return judge.fault(attrs.evolve(fixture, seating=claim))
+    return judge.find_fault(attrs.evolve(fixture, seating=claim))
 
 
 def told(fields: Fields, fixture: Any) -> Any:
@@ -127,7 +127,7 @@ BOUNDED = ("way_out", "cage", "cage_short", "placing", "depth")
 def test_every_number_that_is_off_a_little_is_refuted(part: Workpiece, toolkit: Any, tmp_path: Path) -> None:
     listing = written(solved(part, toolkit), tmp_path / "r.json")
     judge, fields = SeatingJudge(listing.query), listing.fixtures[0].seating.fields
-    assert judge.fault(listing.fixtures[0]) == ""
+    assert judge.find_fault(listing.fixtures[0]) == ""
     missed = []
     for place, value in leaves(fields):
         if place[0] in BOUNDED or place[-1] in BOUNDED or isinstance(value, str):
@@ -175,7 +175,7 @@ def test_a_fixture_on_the_same_pegs_must_be_among_the_seats(tmp_path: Path) -> N
     """A seat left out with all counts adjusted is seen where the list has that fixture."""
     result = workhold.design(WEDGE, VISE, types="I", seating=3)
     listing = written(result, tmp_path / "r.json")
-    assert not list(pattern_faults(listing.fixtures, listing.query))
+    assert not list(find_pattern_faults(listing.fixtures, listing.query))
 
     def alike(fixture: Any) -> list[Fields]:
         seats = fixture.seating.fields["seats"]
@@ -190,7 +190,7 @@ def test_a_fixture_on_the_same_pegs_must_be_among_the_seats(tmp_path: Path) -> N
         assert len(cut["seats"]) == len(fields["seats"]) - 1
         changed = list(listing.fixtures)
         changed[place] = attrs.evolve(fixture, seating=attrs.evolve(fixture.seating, fields=cut))
-        faults = list(pattern_faults(changed, listing.query))
+        faults = list(find_pattern_faults(changed, listing.query))
         assert all(f"stands on the pegs of fixture {place + 1}," in words for words in faults)
         found += bool(faults)
     assert found > 1
@@ -228,16 +228,16 @@ def stepped(fixture: Any, toolkit: Any) -> Any:
 def test_what_stands_on_the_same_pegs_is_told_of_every_toolkit(part: Workpiece, toolkit: Any) -> None:
     """The first fixture on whose pegs others stand: all of them are its seats, and none may be left out."""
     every = list(workhold.design(part, toolkit))
-    keys = [stance(fixture, toolkit).key for fixture in every]
+    keys = [describe_stance(fixture, toolkit).key for fixture in every]
     place = next(k for k, key in enumerate(keys) if keys.count(key) > 1)
     first, query = every[place], workhold.Query(part, toolkit, seating=1)
     told = Solver(part, toolkit).of(first, with_cage=False).as_fields()
     others = [stepped(every[k], toolkit) for k in range(len(every)) if k != place]
-    assert stance(stepped(first, toolkit), toolkit).key == keys[place]
+    assert describe_stance(stepped(first, toolkit), toolkit).key == keys[place]
 
     def faults(fields: Fields) -> list[str]:
         claim = claim_of(fields, first.pose, query, "the result", 1)
-        return list(pattern_faults([attrs.evolve(first, seating=claim), *others], query))
+        return list(find_pattern_faults([attrs.evolve(first, seating=claim), *others], query))
 
     assert not faults(told)
     missing = [
@@ -277,17 +277,17 @@ def test_a_search_compares_what_a_file_alone_cannot_show(result: Result, tmp_pat
     assert path.read_text() != text and workhold.verify(path).holds
     outcome = workhold.verify(path, complete=True)
     assert any("another way_out of the seating" in words for words in outcome.faults)
-    assert any("lower pass" in words for words in not_shown(VISE, True))
-    assert not any("lower pass" in words for words in not_shown(VISE))
+    assert any("lower pass" in words for words in list_not_shown(VISE, True))
+    assert not any("lower pass" in words for words in list_not_shown(VISE))
 
 
 def test_the_first_other_key_is_told() -> None:
     one: Fields = {"a": 1.0, "b": [{"c": 2.0, "d": None}], "e": "word"}
-    assert first_other(one, one) == ""
-    assert first_other(one, one | {"a": 1.0 + 1e-5}) == "a"
-    assert first_other(one | {"b": [{"c": 2.0, "d": 3.0}]}, one) == "b"
-    assert first_other(one | {"b": []}, one) == "b"
-    assert first_other(one | {"e": "other"}, one) == "e"
+    assert find_first_difference(one, one) == ""
+    assert find_first_difference(one, one | {"a": 1.0 + 1e-5}) == "a"
+    assert find_first_difference(one | {"b": [{"c": 2.0, "d": 3.0}]}, one) == "b"
+    assert find_first_difference(one | {"b": []}, one) == "b"
+    assert find_first_difference(one | {"e": "other"}, one) == "e"
 
 
 @pytest.mark.thorough
@@ -349,7 +349,7 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
     arcs = Workpiece.from_loops("arcs", [[[0, 0, 0], [60, 0, 0.1], [60, 40, 0], [0, 40, 0]]])
     for theta, is_inside in ((0.0, False), (-80.0, True), (-90.0, True), (-150.0, False)):
         place = PartPlacement(theta, 0.0, 0.0)
-        touched = touching_wall(BallOutline.of(arcs), {"peg": 1, "face": 1}, place)
+        touched = make_wall_contact(BallOutline.from_workpiece(arcs), {"peg": 1, "face": 1}, place)
         assert touched.is_inside == is_inside, theta
     ends = {one["peg"]: one for one in own["contacts"] if one["peg"] in (1, 2)}
     exchanged = [
@@ -371,11 +371,13 @@ def test_on_a_fence_contacts_touch_it_and_nothing_is_below(tmp_path: Path) -> No
 
 @pytest.mark.parametrize("mirrored", [False, True])
 def test_the_lowest_point_of_a_part_is_that_of_its_box(mirrored: bool) -> None:
-    rough = FloatOutline.of(BallOutline.of(BOWED).segments, BOWED)
+    rough = FloatOutline.from_segments(BallOutline.from_workpiece(BOWED).segments, BOWED)
     part = BOWED.turned_over if mirrored else BOWED
     for theta in range(0, 360, 7):
         low = part.placed(Pose(theta, 3.0, 5.0)).bounds[1]
-        assert rough.lowest(PartPlacement(theta, 3.0, 5.0, mirrored)) == pytest.approx(low, abs=1e-9)
+        assert rough.compute_lowest_height(PartPlacement(theta, 3.0, 5.0, mirrored)) == pytest.approx(
+            low, abs=1e-9
+        )
 
 
 def test_what_stops_a_clamp_or_jaws() -> None:

@@ -18,7 +18,7 @@ from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData
 from workhold.model.stock import Stock, StockShape
 from workhold.verification import verify_file
-from workhold.verification.stock_walk import stock_faults
+from workhold.verification.stock_walk import find_stock_faults
 
 
 def asked(seed: int, side: float = 5.0, shape: StockShape = "outline") -> Query:
@@ -37,7 +37,7 @@ def asked(seed: int, side: float = 5.0, shape: StockShape = "outline") -> Query:
 def test_the_walk_agrees_with_the_closed_form(seed: int, side: float, shape: StockShape) -> None:
     query = asked(seed, side, shape)
     assert query.program is not None and query.program.forces is not None
-    assert list(stock_faults(query)) == []
+    assert list(find_stock_faults(query)) == []
     stretches = query.program.forces.stretches
     inner = [k for k in range(len(stretches)) if stretches.first[k] > 0.0 or stretches.last[k] < 1.0]
     # A stretch that is longer or shorter than it is, is refused, and so is a stock of another size.
@@ -52,7 +52,7 @@ def test_the_walk_agrees_with_the_closed_form(seed: int, side: float, shape: Sto
             wrong = evolve(stretches, **{name: values})
             program = evolve(query.program, forces=evolve(query.program.forces, stretches=wrong))
             object.__setattr__(other := evolve(query), "program", program)
-            assert any("elsewhere than is said" in one for one in stock_faults(other)), (k, name, by)
+            assert any("elsewhere than is said" in one for one in find_stock_faults(other)), (k, name, by)
 
 
 NC = "(T1 D=10)\nG21 G90\nT1 M6\nG0 X-40 Y40 Z20\nG1 Z8 F300\nX130\nY20\nZ4\nG2 X-30 Y20 I-80 J0\nM30\n"

@@ -111,7 +111,7 @@ def test_rotations_are_those_that_the_part_was_made_with(name: str) -> None:
     """Found by the search and by the verification, apart from each other, with the point that they keep."""
     case = PARTS[name]
     faces = [face.segment for face in case.part.faces]
-    turning, rotations = PartRotations.of(case.part), find_rotations_onto_itself(faces)
+    turning, rotations = PartRotations.from_workpiece(case.part), find_rotations_onto_itself(faces)
     assert turning.is_certain and turning.order == len(rotations) == case.order
     assert turning.angles == pytest.approx([rotation.angle for rotation in rotations[1:]])
     for point in (turning.center, find_centroid_of_joints(faces)):
@@ -127,7 +127,7 @@ def test_a_symmetry_that_a_drawing_nearly_has_is_no_fault_either_way(
 ) -> None:
     """A corner that is off by a thousandth of a micrometre may be meant or not, so nothing is said of the sets."""
     part = Workpiece.from_loops("box", [[(0, 0, 0), (50 + off, 0, 0), (60, 30, 0), (10, 30, 0)]])
-    turning = PartRotations.of(part)
+    turning = PartRotations.from_workpiece(part)
     assert (turning.order, turning.is_certain) == (order, is_certain)
     result = answer(Query(part, TOOLKITS["vise"]))
     counts = ({**result.distinct, "I": result.found["I"] - fewer} for fewer in (1, 0))

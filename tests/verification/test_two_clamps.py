@@ -35,13 +35,13 @@ from workhold.model.fixture import Pair
 from workhold.model.notes import NoPair
 from workhold.model.search_report import AT_AN_EDGE, Undecided
 from workhold.verification import Verification, verify, verify_fixture
-from workhold.verification.account import too_few_contacts
+from workhold.verification.account import has_too_few_contacts
 from workhold.verification.ball_geometry import BallOutline
 from workhold.verification.contacts import BallContact
 from workhold.verification.contacts import BallPose as Balls
-from workhold.verification.listing import listing_of
+from workhold.verification.listing import collect_claims
 from workhold.verification.rules.travel import WAYS, Stroke, clamp_place
-from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
+from workhold.verification.seat import LocatorWrenches, Push, SeatBalance, compute_closure_margin, find_ratio
 from workhold.verification.seat_clamps import SeatClamp, SeatOnPlate
 
 Data = dict[str, Any]
@@ -183,10 +183,10 @@ def test_contacts_make_no_more_seats_and_pairs_than_there_can_be(
     results: dict[str, Result], found: int, pairs: int, seats: int
 ) -> None:
     """Five make ten pairs, and each seat with its one pair of directions takes two."""
-    listing, proof = listing_of(results["all"]), results["all"].proof
+    listing, proof = collect_claims(results["all"]), results["all"].proof
     assert proof is not None and len(results["all"].toolkit.directions) == 1  # type: ignore[attr-defined]
     claimed = attrs.evolve(listing, found={"clamp2": found}, pairs=pairs, seats=seats)
-    few = too_few_contacts(claimed, attrs.evolve(proof, verified=5))
+    few = has_too_few_contacts(claimed, attrs.evolve(proof, verified=5))
     assert few == (max(found, pairs) > 10 or seats > 2)
 
 
@@ -299,12 +299,12 @@ def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) ->
 
 def standing(fixture: Fixture, workpiece: Workpiece, toolkit: Plate) -> SeatOnPlate:
     """The seat of a fixture, at its pose as it is written."""
-    rules, outline = rules_in(toolkit), BallOutline.of(workpiece)
-    pose = Balls.of(
+    rules, outline = rules_in(toolkit), BallOutline.from_workpiece(workpiece)
+    pose = Balls.from_turn_and_place(
         arb(fixture.pose.theta_deg) * arb.pi() / 180, arb(fixture.pose.x), arb(fixture.pose.y), arb(0)
     )
-    locators = [rules.contact(peg, outline.faces[peg.face]) for peg in fixture.pegs[:3]]
-    return SeatOnPlate.of(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
+    locators = [rules.make_contact(peg, outline.faces[peg.face]) for peg in fixture.pegs[:3]]
+    return SeatOnPlate.from_fixture(fixture, locators, pose, Query(workpiece, toolkit), rules, outline)
 
 
 def with_clamps(fixture: Fixture, *clamps: SeatClamp) -> Fixture:
@@ -341,7 +341,7 @@ def test_a_clamp_that_holds_alone_needs_no_other() -> None:
         seat = standing(fixture, workpiece, toolkit)
         assert fixture.pegs[3].place is not None
         alone = fixture.pegs[3]
-        second = next(iter(seat.clamps("-y")), None)
+        second = next(iter(seat.list_clamps("-y")), None)
         if second is None:
             continue
         first = attrs.evolve(
@@ -351,7 +351,7 @@ def test_a_clamp_that_holds_alone_needs_no_other() -> None:
         assert ruling.verdict == "refuted"
         assert "clamp 1 holds the part without the other" in ruling.reason, ruling
         # Nor is it among the clamps of the seat.
-        assert all((clamp.line, clamp.face) != (alone.row, alone.face) for clamp in seat.clamps("-x"))
+        assert all((clamp.line, clamp.face) != (alone.row, alone.face) for clamp in seat.list_clamps("-x"))
         looked_at += 1
     assert looked_at > 3
 
@@ -368,7 +368,7 @@ def test_clamps_that_touch_each_other_are_none() -> None:
     for toolkit in (thin, fat):
         for fixture in design(workpiece, toolkit, best=60):
             seat = standing(fixture, workpiece, toolkit)
-            clamps = sorted(seat.clamps("-x"), key=lambda clamp: clamp.line)
+            clamps = sorted(seat.list_clamps("-x"), key=lambda clamp: clamp.line)
             beside = [pair for pair in pairwise(clamps) if pair[1].line - pair[0].line == 1]
             if fixture.pose.theta_deg % 90 == 0 and beside:
                 words.append(verify_fixture(with_clamps(fixture, *beside[0]), workpiece, toolkit).reason)
@@ -380,12 +380,14 @@ def test_clamps_that_touch_each_other_are_none() -> None:
 def test_bodies_of_clamps_keep_clear_of_each_other_as_well(radius: float, overlap: bool) -> None:
     """One along a row from its hole at x = 30 to its tip at 0, and a tip 10 mm above the middle of that."""
     pose = posed(-30, -40)
-    side, thick = BallOutline.of(part(BLOCK)).faces[0], arb(radius)
+    side, thick = BallOutline.from_workpiece(part(BLOCK)).faces[0], arb(radius)
     lying = BallContact((arb(30), arb(0)), (arb(1), arb(0)), side, thick)
     upright = BallContact((arb(20), arb(50)), (arb(0), arb(1)), side, thick, travel=1)
-    found = [finding.reason for finding in Stroke((10.0, 50.0), None).apart_findings(lying, upright, pose)]
+    found = [
+        finding.reason for finding in Stroke((10.0, 50.0), None).judge_clearance_between(lying, upright, pose)
+    ]
     assert found == (["the clamps meet: they overlap by 0.002 mm"] if overlap else [])
-    assert list(Stroke(None, None).apart_findings(lying, upright, pose)) == []
+    assert list(Stroke(None, None).judge_clearance_between(lying, upright, pose)) == []
 
 
 def push(taken: tuple[float, float, float], share: float = 1.0) -> Push:
@@ -414,29 +416,29 @@ def test_what_clamps_may_do_at_a_seat(apart: float, first: Push, words: str) -> 
     points = [(arb(0), arb(0)), (arb(apart), arb(0)), (arb(0), arb(5))]
     normals = [(arb(0), arb(1)), (arb(0), arb(1)), (arb(1), arb(0))]
     seat, second = LocatorWrenches(points, normals), push((0.5, -0.5, 0.5))
-    balance = SeatBalance(points, normals, seat, (first, second), ratio_of(first, second))
-    found = [finding.reason for finding in balance.push_findings(1.0)]
+    balance = SeatBalance(points, normals, seat, (first, second), find_ratio(first, second))
+    found = [finding.reason for finding in balance.judge_pushes(1.0)]
     assert found == [] if not words else words in found[0]
 
 
 def test_ratio_and_margin_in_closed_form() -> None:
     """The textbook's 3-2-1, a pair that needs both at once, and one that closes at no ratio."""
     side, between = push((1.0, 0.0, 0.0)), push((0.0, 0.5, 0.5))
-    ratio = ratio_of(side, between)
+    ratio = find_ratio(side, between)
     assert ratio is not None and ratio.high is None and ratio.low == 0 and abs(ratio.freedom - 90) < 1e-12
-    assert abs(closure_margin(side, between) - arb(1) / 6) < 1e-12
+    assert abs(compute_closure_margin(side, between) - arb(1) / 6) < 1e-12
     lifting = push((1.0, -0.5, 1.0)), push((-0.25, 1.0, 0.0))
-    ratio = ratio_of(*lifting)
+    ratio = find_ratio(*lifting)
     assert ratio is not None and ratio.high is not None and ratio.low == 0.5 and ratio.high == 4
-    assert closure_margin(*lifting) > 0.05
-    apart = ratio_of(push((1.0, -1.0, 1.0)), push((-1.0, 0.5, 0.0)))
+    assert compute_closure_margin(*lifting) > 0.05
+    apart = find_ratio(push((1.0, -1.0, 1.0)), push((-1.0, 0.5, 0.0)))
     assert apart is not None and apart.freedom < 0
-    assert closure_margin(push((1.0, -1.0, 1.0)), push((-1.0, 0.5, 0.0))) == 0
+    assert compute_closure_margin(push((1.0, -1.0, 1.0)), push((-1.0, 0.5, 0.0))) == 0
     # Less than 1e-9 is nothing, and just that is undecided.
-    nothing = ratio_of(push((1.0, -5e-10, 0.0)), push((0.0, 0.5, 0.5)))
+    nothing = find_ratio(push((1.0, -5e-10, 0.0)), push((0.0, 0.5, 0.5)))
     assert nothing is not None and nothing.low == 0
     edge = Push((arb(1), arb(-1e-9, 1e-20), arb(0)), arb(1))
-    assert ratio_of(edge, between) is None
+    assert find_ratio(edge, between) is None
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -444,7 +446,7 @@ def test_the_margin_is_the_largest_least_share(seed: int) -> None:
     """Beside a fine grid of shares of both clamps, which it is never below and hardly above."""
     chance = np.random.default_rng(seed)
     one, other = chance.normal(size=(2, 3)) + 0.4
-    margin = float(closure_margin(push(tuple(one)), push(tuple(other))).mid())
+    margin = float(compute_closure_margin(push(tuple(one)), push(tuple(other))).mid())
     share = np.linspace(0, 1, 20001)[:, None]
     rows = (1 - share) * [*one, 1, 0] + share * [*other, 0, 1]
     total = rows.sum(axis=1)

@@ -121,7 +121,7 @@ def running_server(
     """A server with one worker of each kind, ready for requests; workers are forked, and the desk
     reads STEP files itself."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("workhold.web.pool.work", work_reading_here)
+        patch.setattr("workhold.web.pool.run_worker", work_reading_here)
         patch.setattr("workhold.web.pool.get_context", lambda _: warm_context())
         yield from served(proxies, token, origins, **limits)
 

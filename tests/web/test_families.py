@@ -10,7 +10,7 @@ from running_server import LONG, RunningServer, request
 
 from family_parts import shop_parts
 from workhold import Query, Vise
-from workhold.family.family import Asked, family_of, family_text
+from workhold.family.family import Asked, make_family, write_family_json
 from workhold.family.members import RANKINGS
 
 pytest.importorskip("scipy", reason="the extra [batch] is not installed")
@@ -46,7 +46,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     )
     answer = server.client.get(f"{job}/family").json()
     vise = Vise(pitch=10, columns=1, peg_radius=3)
-    family = family_of(
+    family = make_family(
         [Asked(part.name, Query(part, vise, rank_by=RANKINGS[1])) for part in PARTS], threads=1
     )
     assert [(one["setups"], one["loss"]) for one in answer["points"]] == [
@@ -60,7 +60,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     assert answer["figure"] == "location_error" and answer["parts"] == [part.name for part in PARTS]
     assert answer["left_out"] == [{"name": "disc", "reason": "it has no fixture in this vise"}]
     told = json.loads(server.client.get(f"{job}/family/plans.json").text)["family"]
-    assert told["curve"] == json.loads(family_text(family))["family"]["curve"]
+    assert told["curve"] == json.loads(write_family_json(family))["family"]["curve"]
 
 
 def test_curve_and_sheets_are_made(server: RunningServer, job: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 from running_server import PATIENCE, RunningServer, request
 from test_parts import refused
 
-from workhold.web.serve import hosts_of
+from workhold.web.serve import list_hosts
 
 
 @pytest.mark.parametrize(
@@ -48,10 +48,10 @@ def test_names_of_this_machine_are_let_through(server: RunningServer, host: str)
 
 
 def test_a_server_for_all_addresses_is_called_by_numbers_and_given_names_only() -> None:
-    hosts = hosts_of("0.0.0.0", ["shop.example"])
+    hosts = list_hosts("0.0.0.0", ["shop.example"])
     assert hosts.knows("192.168.1.5:8000") and hosts.knows("Shop.Example") and not hosts.knows("evil.example")
-    assert not hosts_of("127.0.0.1", []).knows("192.168.1.5")
-    assert hosts_of("shop.example", []).knows("shop.example:80")
+    assert not list_hosts("127.0.0.1", []).knows("192.168.1.5")
+    assert list_hosts("shop.example", []).knows("shop.example:80")
 
 
 @pytest.mark.parametrize(

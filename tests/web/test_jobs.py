@@ -15,8 +15,8 @@ from running_server import LONG, PATIENCE, SQUARE, VISE, WIDGET, RunningServer, 
 from test_parts import refused
 
 from workhold import Load, Result, Tolerance, Vise, design, load
-from workhold.files.result.fixture_text import result_csv_text
-from workhold.files.result.writer import result_text
+from workhold.files.result.fixture_text import write_result_csv
+from workhold.files.result.writer import write_result_text
 from workhold.model.quality import FIGURES, PIN_KEYS
 from workhold.statics.loads import load_cases
 
@@ -70,7 +70,7 @@ def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, res
 
 
 def test_downloads_are_the_files_the_program_writes(server: RunningServer, job: str, result: Result) -> None:
-    for ending, text_of in (("json", result_text), ("csv", result_csv_text)):
+    for ending, text_of in (("json", write_result_text), ("csv", write_result_csv)):
         answer = server.client.get(f"{job}/result.{ending}")
         assert answer.text == "".join(text_of(result))
         assert answer.headers["content-disposition"] == f'attachment; filename="widget.{ending}"'

@@ -121,8 +121,8 @@ def test_shapes_and_orders_count_and_few_orders_and_seatings_are_kept(
     found = SimpleNamespace(index=np.zeros(3, dtype=np.int64), like=np.zeros(3, dtype=np.int64))
     selections: list[Any] = []
     for _ in range(kept_jobs.ORDERS_KEPT + 2):
-        selections.append(SimpleNamespaceWithHash(entries=lambda result: found))
-        assert one.chosen(selections[-1], None) is found  # type: ignore[arg-type]
+        selections.append(SimpleNamespaceWithHash(choose_entries=lambda result: found))
+        assert one.choose_entries(selections[-1], None) is found  # type: ignore[arg-type]
     assert [key[1] for key in one.orders] == selections[2:]
     assert one.size == 100 + 2 * positions.nbytes + triangles.nbytes + 4 + kept_jobs.ORDERS_KEPT * 48
     for rank in range(kept_jobs.SEATINGS_KEPT + 3):
@@ -186,7 +186,7 @@ def test_how_many_there_are_about_is_said_beside_the_best(jobs: Jobs) -> None:
     """Not that nobody counted them, which the kept result says, as it is one of the best alone."""
     whole = fake_result(5)
     limited = evolve(whole, query=evolve(whole.query, best=5), notes=(BestOnly(5),))
-    made = job(jobs, "one", asked=AskedQueries.of((("", whole.query),)))
+    made = job(jobs, "one", asked=AskedQueries.from_queries((("", whole.query),)))
     jobs.keep(made, Found(limited, 0, (Many(4_240_000, 5),)))
     assert tuple(map(str, made.notes)) == ("There are about 4,200,000 fixtures: these are the best 5.",)
     assert made.result is not None and made.result.query.best == 5 and made.result.notes == (BestOnly(5),)

@@ -10,7 +10,7 @@ from test_parts import refused
 from typer.testing import CliRunner
 
 from workhold.cli.main import app
-from workhold.web.origins import checked_origin
+from workhold.web.origins import check_origin
 
 SHOP = "https://shop.example"
 ASKS = {"Access-Control-Request-Method": "POST", "Access-Control-Request-Headers": "content-type"}
@@ -99,7 +99,7 @@ def test_a_page_of_the_internet_may_reach_a_server_at_home(shared: RunningServer
     ],
 )
 def test_origins_are_written_as_browsers_send_them(given: str, written: str) -> None:
-    assert checked_origin(given) == written
+    assert check_origin(given) == written
 
 
 @pytest.mark.parametrize(

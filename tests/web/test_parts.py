@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from running_server import SQUARE, WIDGET, RunningServer
 
-from workhold.files.part.load import builtin_parts, read_workpiece
-from workhold.files.toolkit_file import load_toolkit, preset_names
-from workhold.fixels.kinds import toolkit_of
+from workhold.files.part.load import list_builtin_parts, read_workpiece
+from workhold.files.toolkit_file import list_preset_names, load_toolkit
+from workhold.fixels.kinds import make_toolkit
 from workhold.model.quality import FIGURES
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
@@ -41,7 +41,7 @@ def test_about_tells_the_limits_in_force(server: RunningServer) -> None:
 
 def test_every_builtin_part_is_listed_and_read(server: RunningServer) -> None:
     listed = server.client.get("/api/parts").json()
-    assert [part["name"] for part in listed] == [part.name for part in builtin_parts()]
+    assert [part["name"] for part in listed] == [part.name for part in list_builtin_parts()]
     for part in listed:
         answer = server.client.get(f"/api/parts/{part['name']}").json()
         workpiece = read_workpiece(part["name"]).workpiece
@@ -161,9 +161,9 @@ def test_what_is_no_json_is_refused(server: RunningServer, body: bytes) -> None:
 
 def test_presets_are_told_and_can_be_asked_for(server: RunningServer) -> None:
     presets = server.client.get("/api/presets").json()
-    assert [vise["name"] for vise in presets] == list(preset_names())
+    assert [vise["name"] for vise in presets] == list(list_preset_names())
     for vise in presets:
-        assert toolkit_of(vise["kind"], vise["fields"]) == load_toolkit(vise["name"]).toolkit
+        assert make_toolkit(vise["kind"], vise["fields"]) == load_toolkit(vise["name"]).toolkit
 
 
 def test_figures_are_all_told(server: RunningServer) -> None:

@@ -12,7 +12,7 @@ from attrs import evolve
 import workhold.search.design as designing
 from workhold import Query, Result, Vise, load
 from workhold.search import estimate
-from workhold.web.searching import FIRST, AskedQueries, mark_of, search, with_best_first
+from workhold.web.searching import FIRST, AskedQueries, mark_of, put_best_first, search
 from workhold.web.worker import Order
 
 SECONDS = 600.0
@@ -56,7 +56,8 @@ def run(
     """The outcome of the task, and what it reports."""
     reports: list[Any] = []
     return search(
-        (AskedQueries.of((("", query),)), most, every), Order(reports.append, cancel or Event(), SECONDS)
+        (AskedQueries.from_queries((("", query),)), most, every),
+        Order(reports.append, cancel or Event(), SECONDS),
     ), reports
 
 
@@ -115,7 +116,7 @@ def test_a_search_that_is_stopped_among_the_best_keeps_those_found(
         if value[0] == "progress" and value[2] > FIRST:
             cancel.set()
 
-    found = search((AskedQueries.of((("", query),)), 10_000, False), Order(report, cancel, SECONDS))
+    found = search((AskedQueries.from_queries((("", query),)), 10_000, False), Order(report, cancel, SECONDS))
     assert asked == [FIRST] and not found.result.complete
     assert 0 < len(found.result) <= FIRST and found.result.query == query
 
@@ -124,7 +125,7 @@ def test_a_search_that_is_stopped_keeps_the_best_first(whole: Result) -> None:
     """Before what else was found, each once, and it is not whole all the same."""
     best = evolve(whole.part(slice(0, 5)), distinct=dict.fromkeys(whole.distinct, 1))
     later = evolve(whole.part(slice(3, 9)), complete=False, found=dict.fromkeys(whole.found, 0))
-    joined = with_best_first(later, best)
+    joined = put_best_first(later, best)
     assert marks(joined) == marks(whole)[:9] and not joined.complete
     assert sum(joined.found.values()) == 9
 

@@ -12,11 +12,11 @@ from attrs import asdict, fields_dict
 from running_server import WIDGET, RunningServer, request
 
 from workhold import Plate, design, load
-from workhold.files.toolkit_file import load_toolkit, preset, preset_names
+from workhold.files.toolkit_file import list_preset_names, load_preset, load_toolkit
 from workhold.fixels.contacts import DIRECTIONS, WALL_END
-from workhold.fixels.kinds import ALIASES, KINDS, kind_of, toolkit_of
+from workhold.fixels.kinds import ALIASES, KINDS, make_toolkit, resolve_kind
 from workhold.fixels.support_hardware import HARDWARE
-from workhold.web.answers import fixture_answer
+from workhold.web.answers import describe_fixture
 from workhold.web.forms import JobForm
 from workhold.web.toolkits import DESCRIBED, Described
 
@@ -27,21 +27,21 @@ PLATE = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "direc
 def asked(vise: Any) -> Any:
     """The toolkit that a request asks for."""
     form = JobForm.model_validate({"workpiece": WIDGET, "toolkit": json.loads(json.dumps(vise))})
-    return form.toolkit.toolkit()
+    return form.toolkit.to_toolkit()
 
 
 def test_every_kind_is_on_the_page() -> None:
     """A kind, or the alias that says most about one; nothing is there twice."""
     names = [one.name for one in DESCRIBED]
     assert len(set(names)) == len(names)
-    assert set(KINDS) <= set(names) | {kind_of(name)[0] for name in names}
+    assert set(KINDS) <= set(names) | {resolve_kind(name)[0] for name in names}
     assert {name for name, (_, said) in ALIASES.items() if said} <= set(names)
 
 
 @pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
 def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
     """Once for each set of other values, but for those that the name says; what must be filled in begins with a value."""
-    kind = KINDS[kind_of(one.name)[0]]
+    kind = KINDS[resolve_kind(one.name)[0]]
     shown = [field.name for field in one.fields]
     assert set(shown) | set(one.said) | set(HARDWARE) == set(fields_dict(kind)) - {"tolerance"}  # type: ignore[arg-type]
     assert not set(shown) & set(one.said)
@@ -49,7 +49,7 @@ def test_every_field_of_a_kind_is_on_the_page(one: Described) -> None:
         alike = list(group)
         assert len({json.dumps(dict(field.when)) for field in alike}) == len(alike)
     assert all(field.name in one.words.start for field in one.fields if field.hint is None and not field.when)
-    assert asked({"kind": one.name, **one.words.start}) == toolkit_of(one.name, one.words.start)
+    assert asked({"kind": one.name, **one.words.start}) == make_toolkit(one.name, one.words.start)
 
 
 @pytest.mark.parametrize("one", DESCRIBED, ids=lambda one: one.name)
@@ -93,7 +93,7 @@ def test_a_preset_is_of_the_kind_that_says_most(server: RunningServer) -> None:
     """A vise of one column is a gripper; every preset is asked for as the page shows it."""
     presets = {one["name"]: one for one in server.client.get("/api/presets").json()}
     kinds = {name: one["kind"] for name, one in presets.items()}
-    assert list(presets) == list(preset_names())
+    assert list(presets) == list(list_preset_names())
     assert kinds["gripper-one-column"] == "gripper" and kinds["gripper-two-columns"] == "vise"
     assert kinds["clamp-plate-20mm"] == "translating-clamp"
     for name, kind in kinds.items():
@@ -189,14 +189,14 @@ def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: Running
 @pytest.mark.parametrize("name", ["machine-vise-6-inch", "fence-20mm", "clamp-plate-20mm", "plate-20mm"])
 def test_each_carrier_has_its_own_pegs(name: str) -> None:
     """By the numbers that they have in the fixture, also where the wall comes first; walls have what lies flush."""
-    toolkit = preset(name).toolkit
+    toolkit = load_preset(name).toolkit
     workpiece = load(Path(__file__).parents[2] / "examples" / "bracket.dxf")
     fixture = design(workpiece, toolkit, best=1)[0]
-    row = fixture_answer(fixture, workpiece, toolkit)
+    row = describe_fixture(fixture, workpiece, toolkit)
     told = {number: each for each in row["carriers"] for number in each["pegs"]}
     assert sorted(told) == list(range(len(fixture.pegs)))
     for number, peg in enumerate(fixture.pegs):
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         assert told[number]["peg_radius"] == carrier.peg_radius
         assert (number in row["flush"]) == (carrier.contact is WALL_END)
 
@@ -204,6 +204,6 @@ def test_each_carrier_has_its_own_pegs(name: str) -> None:
 def test_a_listing_is_of_two_clamps_alone() -> None:
     """Another toolkit, which the page may have been changed to meanwhile, is asked without one."""
     asked = request(listing="all")
-    assert JobForm.model_validate(asked).queries(1000)[0][1].listing is None
+    assert JobForm.model_validate(asked).to_queries(1000)[0][1].listing is None
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
-    assert JobForm.model_validate(asked | {"toolkit": plate}).queries(1000)[0][1].listing == "all"
+    assert JobForm.model_validate(asked | {"toolkit": plate}).to_queries(1000)[0][1].listing == "all"

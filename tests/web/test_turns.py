@@ -16,9 +16,9 @@ from running_server import LONG, PATIENCE, RunningServer, arriving, request, run
 
 from workhold.cli.main import app
 from workhold.web import serve
-from workhold.web.guard import ServerLimits, usual_memory
+from workhold.web.guard import ServerLimits, compute_usual_memory
 from workhold.web.pool import BusyError, Pool, PoolTask
-from workhold.web.serve import hosts_of
+from workhold.web.serve import list_hosts
 
 T = TypeVar("T")
 OTHER = "127.0.0.2"
@@ -34,13 +34,13 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
         order, running = [], []
         while pool.waiting:
             if pool.turn() is None:
-                pool.free(running.pop(0))
+                pool.release_worker(running.pop(0))
                 continue
-            task = await pool.next_task()
+            task = await pool.wait_for_task()
             order.append(task.client)
             running.append(task)
             if len(running) == size:
-                pool.free(running.pop(0))
+                pool.release_worker(running.pop(0))
         return order
 
     return run_alone(play())
@@ -66,13 +66,13 @@ def test_nobody_has_all_workers() -> None:
     async def play() -> None:
         pool = Pool("search", 3, 1 << 30, 64)
         pool.waiting = [PoolTask("x", None, 1.0, "greedy") for _ in range(5)]
-        mine = [await pool.next_task() for _ in range(2)]
+        mine = [await pool.wait_for_task() for _ in range(2)]
         assert pool.turn() is None
         pool.waiting.append(PoolTask("x", None, 1.0, "other"))
-        assert (await pool.next_task()).client == "other"
+        assert (await pool.wait_for_task()).client == "other"
         assert pool.turn() is None
-        pool.free(mine[0])
-        assert (await pool.next_task()).client == "greedy"
+        pool.release_worker(mine[0])
+        assert (await pool.wait_for_task()).client == "greedy"
 
     run_alone(play())
 
@@ -237,11 +237,11 @@ def test_whoever_lets_others_in_is_told_what_that_means(monkeypatch: pytest.Monk
 def test_searches_share_the_machines_memory() -> None:
     """No search is given more than its share of what there is, and never less than one can work with."""
     assert ServerLimits().memory_bytes == 4 << 30
-    shares = [usual_memory(searches) for searches in (1, 2, 4, 8, 64)]
+    shares = [compute_usual_memory(searches) for searches in (1, 2, 4, 8, 64)]
     assert shares == sorted(shares, reverse=True)
     assert all(1 << 30 <= share <= 4 << 30 for share in shares)
 
 
 def test_the_names_of_the_server_hold_behind_a_proxy() -> None:
     """A proxy that hands the visitor's Host on needs its name to be allowed."""
-    assert hosts_of("127.0.0.1", ["plates.example"]).knows("plates.example:443")
+    assert list_hosts("127.0.0.1", ["plates.example"]).knows("plates.example:443")

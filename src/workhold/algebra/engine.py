@@ -39,7 +39,7 @@ from workhold.contact.problem import Frame, Problem, Progress
 from workhold.conventions import SAME_CENTER
 from workhold.errors import InputError
 from workhold.kernels.base.feature import SEGMENT_LENGTH
-from workhold.listing.results import Work, joined_ways, listed_result
+from workhold.listing.results import Work, join_ways, list_result
 from workhold.model.notes import MoreSystems, Note, UndecidedSystem
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -211,7 +211,7 @@ def stages(solver: ResultantSolver, arrangements: Sequence[str]) -> Iterator[Arr
     pairs = list_peg_pairs(rows[:, :SEGMENT_LENGTH], frame, solver.diameter)
     sliding_pairs = find_sliding_pairs(pairs, solver.scaled, frame, solver.diameter)
     for name in arrangements:
-        systems, sliding = GENERATORS[frame.toolkit.arrangement(name).pegs]
+        systems, sliding = GENERATORS[frame.toolkit.find_arrangement(name).pegs]
         held = sliding(pairs, sliding_pairs, rows, frame)
         if held:
             yield solver.fixtures(SimultaneousContacts.joined(held))
@@ -252,7 +252,7 @@ def find_fixtures_by_algebra(
     if len(ways) > 1:
         alone = [evolve(query, toolkit=way) for way in ways]
         part = partial(find_fixtures_by_algebra, progress=progress, cancel=cancel, is_part=True)
-        return joined_ways(list(map(part, alone)), query)
+        return join_ways(list(map(part, alone)), query)
     problem = Problem.of(query)
     refuse_unlike(problem.frame)
     solver = ResultantSolver(problem.rows, problem.frame, query.contact_margin, problem.diameter)
@@ -270,5 +270,5 @@ def find_fixtures_by_algebra(
         **solver.counts,
         "undecided": sum(map(len, solver.undecided)),
     }
-    result = listed_result(problem, records, Work(complete, statistics), cancel=cancel, is_part=is_part)
+    result = list_result(problem, records, Work(complete, statistics), cancel=cancel, is_part=is_part)
     return evolve(result, notes=(*result.notes, *write_undecided_notes(solver.undecided, problem.faces)))

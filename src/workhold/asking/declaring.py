@@ -16,7 +16,7 @@ from typing import Any, Literal
 from attrs import Attribute, evolve, field, fields, frozen
 
 from workhold.errors import InputError
-from workhold.limits import counting_number, real, refuse_long, refuse_strong
+from workhold.limits import check_count, convert_real, refuse_long, refuse_strong
 
 __all__ = [
     "METAVARS",
@@ -27,9 +27,9 @@ __all__ = [
     "Least",
     "PageLabel",
     "check_fields",
-    "declarations_of",
+    "list_declarations",
     "declare",
-    "values_of",
+    "collect_declared_values",
 ]
 
 # What a value looks like: a whole number; lengths, one or two for x and y, or the least and the most; a flat's
@@ -171,7 +171,7 @@ class Declaration:
     def is_required(self) -> bool:
         return self.default is REQUIRED
 
-    def checked(self, value: Any) -> Any:
+    def check_value(self, value: Any) -> Any:
         """Convert a value of the constructor, and refuse what it cannot be; None stands for nothing given."""
         if value is None and self.default is None:
             return None
@@ -187,7 +187,7 @@ class Declaration:
             case "number":
                 return self.number(value, "cannot be used", "")
             case "count":
-                return counting_number(self.words, value)
+                return check_count(self.words, value)
             case "choice" if value not in self.choices:
                 few = f"{', '.join(self.choices[:-1])} or {self.choices[-1]}"
                 raise InputError(f"the {self.words} cannot be {value!r}: choose {few}.")
@@ -195,7 +195,7 @@ class Declaration:
 
     def number(self, value: Any, wrong: str, unit: str) -> float:
         """Convert a number, and refuse one that is not finite or too small."""
-        number = real(value, self.words)
+        number = convert_real(value, self.words)
         is_low = number <= 0 if self.least == "above 0" else number < 0 and self.least == "0"
         if not isfinite(number) or is_low:
             raise InputError(f"{self.words} {number:g} {wrong}: give {WANTED[self.least]}{unit}.")
@@ -219,33 +219,35 @@ def declare(
 def check_fields(question: type, those: list[Attribute[Any]]) -> list[Attribute[Any]]:
     """Let the constructor of a question check its declared fields: a field transformer of attrs."""
     return [
-        one.evolve(converter=partial(Declaration.checked, declaration_of(one)))
+        one.evolve(converter=partial(Declaration.check_value, find_declaration(one)))
         if KEY in one.metadata and one.converter is None
         else one
         for one in those
     ]
 
 
-def declaration_of(one: Attribute[Any]) -> Declaration:
+def find_declaration(one: Attribute[Any]) -> Declaration:
     """Return the declaration of a field, by the name that the field has."""
     said: Declaration = one.metadata[KEY]
     return evolve(said, name=one.name)
 
 
-def declarations_of(question: type, sections: Iterable[str | None] | None = None) -> tuple[Declaration, ...]:
+def list_declarations(
+    question: type, sections: Iterable[str | None] | None = None
+) -> tuple[Declaration, ...]:
     """List the declared fields of a question in their order, of all sections if None are named.
 
     Examples
     --------
     >>> from workhold.asking.search import SearchQuestion
-    >>> [row.option for row in declarations_of(SearchQuestion, ["Seating"])]
+    >>> [row.option for row in list_declarations(SearchQuestion, ["Seating"])]
     ['--seating', '--opening', '--foolproof']
     """
-    rows = (declaration_of(one) for one in fields(question) if KEY in one.metadata)
+    rows = (find_declaration(one) for one in fields(question) if KEY in one.metadata)
     wanted = None if sections is None else set(sections)
     return tuple(row for row in rows if wanted is None or row.section in wanted)
 
 
-def values_of(question: Any) -> dict[str, Any]:
+def collect_declared_values(question: Any) -> dict[str, Any]:
     """Return the values of a question's declared fields by name."""
-    return {row.name: getattr(question, row.name) for row in declarations_of(type(question))}
+    return {row.name: getattr(question, row.name) for row in list_declarations(type(question))}

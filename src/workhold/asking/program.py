@@ -9,7 +9,7 @@ from attrs import frozen
 from attrs.converters import optional
 
 from workhold.asking.declaring import PageLabel, check_fields, declare
-from workhold.limits import real
+from workhold.limits import convert_real
 
 __all__ = ["FORCES", "PROGRAM", "CuttingQuestion", "ProgramQuestion", "StockQuestion"]
 
@@ -88,7 +88,7 @@ class CuttingQuestion:
         "force",
         "Cutting force, in N, at the periphery of every tool for which the table gives none.",
         least="0",
-        converter=optional(real),
+        converter=optional(convert_real),
         section=FORCES,
         typed="Cutting force, in N or such as 1.5kN, at the periphery of every tool for which the "
         "table gives none.",
@@ -96,7 +96,7 @@ class CuttingQuestion:
     power: float | None = declare(
         "power",
         "Spindle power in kW; the cutting force follows from it and the speed S.",
-        converter=optional(real),
+        converter=optional(convert_real),
         section=FORCES,
         typed="Spindle power in kW, or such as 3hp; the cutting force follows from it and the speed S.",
     )
@@ -111,19 +111,19 @@ class CuttingQuestion:
     teeth: float | None = declare(
         "count",
         "Number of teeth of every tool for which the table gives none.",
-        converter=optional(real),
+        converter=optional(convert_real),
         section=FORCES,
     )
     cut_depth: float | None = declare(
         "length",
         "Largest depth of one cut, along the tool's axis.",
-        converter=optional(real),
+        converter=optional(convert_real),
         section=FORCES,
     )
     cut_width: float | None = declare(
         "length",
         "Width of the cut, across the feed; the tool's diameter if not given.",
-        converter=optional(real),
+        converter=optional(convert_real),
         section=FORCES,
     )
     direction: Any = declare(
@@ -146,7 +146,7 @@ class StockQuestion:
         PageLabel("Around"),
         default=ALLOWANCE,
         least="0",
-        converter=real,
+        converter=convert_real,
     )
     top: float = declare(
         "length",
@@ -154,7 +154,7 @@ class StockQuestion:
         PageLabel("On top"),
         default=ALLOWANCE,
         least="0",
-        converter=real,
+        converter=convert_real,
     )
     shape: Any = declare(
         "choice",

@@ -21,8 +21,8 @@ from typing import Any
 from attrs import define, evolve, field
 
 from workhold.batch.store import Store
-from workhold.batch.tasks import Outcome, Task, Watcher, done
-from workhold.batch.workers import deaf_children
+from workhold.batch.tasks import Outcome, Task, Watcher, run_task
+from workhold.batch.workers import block_interrupts_in_children
 from workhold.errors import InputError
 
 __all__ = ["ClusterWorkers"]
@@ -68,13 +68,13 @@ class ClusterWorkers:
     def __enter__(self) -> ClusterWorkers:
         from distributed import Client, LocalCluster
 
-        at: Any = None if self.address is None else checked_address(self.address)
+        at: Any = None if self.address is None else check_address(self.address)
         # What Dask has to say of what is lost is said in sentences of this program's own.
         self.stack.callback(logging.disable, logging.root.manager.disable)
         logging.disable(logging.CRITICAL)
         try:
             if at is None:
-                with deaf_children():
+                with block_interrupts_in_children():
                     cluster = LocalCluster(
                         n_workers=self.count,
                         threads_per_worker=1,
@@ -92,7 +92,7 @@ class ClusterWorkers:
                 f"no scheduler answers at {self.address}: start one with dask scheduler, or correct the "
                 "address."
             ) from error
-        self.client.subscribe_topic("all", self.hear)
+        self.client.subscribe_topic("all", self.note_worker_event)
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -101,7 +101,7 @@ class ClusterWorkers:
         with suppress(Exception):
             self.stack.close()
 
-    def hear(self, event: tuple[float, Any]) -> None:
+    def note_worker_event(self, event: tuple[float, Any]) -> None:
         """Take note of what the scheduler reports of its workers; runs in a thread of the client's."""
         report = event[1]
         if isinstance(report, dict) and report.get("action") == "remove-worker":
@@ -110,7 +110,7 @@ class ClusterWorkers:
             self.watcher.notify(f"The worker at {report.get('worker')} is lost.{again}")
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
+        """Yield the outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
         finished: SimpleQueue[Any] = SimpleQueue()
         pending: dict[str, tuple[Any, Task]] = {}
         # Given up by the scheduler, perhaps only because of what the same workers had in hand: tried once
@@ -148,7 +148,7 @@ class ClusterWorkers:
                     suspects.append(taken[1])
                     continue
                 try:
-                    outcome = self.outcome(future, taken[1])
+                    outcome = self.get_outcome(future, taken[1])
                 except OSError:
                     # Its worker or the scheduler was lost before the record was fetched; with another
                     # worker it is made anew.
@@ -163,7 +163,7 @@ class ClusterWorkers:
             self.client.cancel([future for future, _ in pending.values()])
 
     def submit(self, task: Task, key: str, finished: SimpleQueue[Any]) -> Any:
-        future = self.client.submit(done_there, task, self.store, key=key, pure=False)
+        future = self.client.submit(run_on_worker, task, self.store, key=key, pure=False)
         future.add_done_callback(finished.put)
         return future
 
@@ -194,7 +194,7 @@ class ClusterWorkers:
                 self.own.scale(self.count)
         return self.threads
 
-    def outcome(self, future: Any, task: Task) -> Outcome | None:
+    def get_outcome(self, future: Any, task: Task) -> Outcome | None:
         """Return what came of a task; None where the scheduler has lost it.
 
         Raises
@@ -237,7 +237,7 @@ def is_killed(future: Any) -> bool:
     return future.status == "error" and type(future.exception()).__name__ == "KilledWorker"
 
 
-def checked_address(address: str) -> str:
+def check_address(address: str) -> str:
     """Return the address of a scheduler; without a kind it is one of TCP.
 
     Raises
@@ -247,7 +247,7 @@ def checked_address(address: str) -> str:
 
     Examples
     --------
-    >>> checked_address("10.0.0.5:8786")
+    >>> check_address("10.0.0.5:8786")
     'tcp://10.0.0.5:8786'
     """
     kind, _, place = address.strip().rpartition("://")
@@ -261,10 +261,10 @@ def checked_address(address: str) -> str:
     return f"{kind or 'tcp'}://{place}"
 
 
-def done_there(task: Task, store: Store | None) -> Outcome:
+def run_on_worker(task: Task, store: Store | None) -> Outcome:
     from distributed import get_worker
 
-    outcome = done(task, str(get_worker().address))
+    outcome = run_task(task, str(get_worker().address))
     if store is None or outcome.record is None:
         return outcome
     try:

@@ -22,13 +22,13 @@ from pathlib import Path
 from attrs import define, field
 
 from workhold.batch.tasks import LETTERS, Outcome
-from workhold.errors import InputError, plain
-from workhold.files.atomic import plain_errors
+from workhold.errors import InputError, make_printable
+from workhold.files.atomic import explain_system_errors
 from workhold.files.budget import LIMITS
 from workhold.files.text import read_limited
 from workhold.fixels.toolkit import Toolkit
 
-__all__ = ["Measured", "answering_seconds", "measures", "reading_seconds"]
+__all__ = ["Measured", "predict_answering_seconds", "compute_measures", "predict_reading_seconds"]
 
 # Seconds are exp(constant) * faces ** first * steps ** second.
 LAWS: Mapping[str, tuple[float, float, float]] = {
@@ -44,12 +44,12 @@ READING: Mapping[str, tuple[float, float]] = {".step": (2.0, 10.0), ".stp": (2.0
 OTHER_READING = (0.005, 1.0)
 
 
-def reading_seconds(ending: str, size: int) -> float:
+def predict_reading_seconds(ending: str, size: int) -> float:
     first, million = READING.get(ending.lower(), OTHER_READING)
     return first + million * size / 1e6
 
 
-def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
+def compute_measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[str, float, float]:
     """Return the law that holds for a toolkit, and the logarithms of what it grows with: faces and steps.
 
     Width and height of the part are in mm.
@@ -65,8 +65,8 @@ def measures(faces: int, size: tuple[float, float], toolkit: Toolkit) -> tuple[s
     return toolkit.law, log(faces), log((2.0 * across + 1.0) * (2.0 * along + 1.0))
 
 
-def answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:
-    law, of_faces, of_steps = measures(faces, size, toolkit)
+def predict_answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:
+    law, of_faces, of_steps = compute_measures(faces, size, toolkit)
     constant, first, second = LAWS[law]
     return exp(constant + first * of_faces + second * of_steps)
 
@@ -106,9 +106,9 @@ class Measured:
                     continue
 
     def add(self, outcome: Outcome) -> None:
-        worker = plain(outcome.worker) or "-"
+        worker = make_printable(outcome.worker) or "-"
         self.known[outcome.name] = (outcome.seconds, worker)
-        with plain_errors(self.path):
+        with explain_system_errors(self.path):
             self.path.parent.mkdir(parents=True, exist_ok=True)
             descriptor = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o666)
             try:

@@ -23,10 +23,10 @@ from attrs import define, field, frozen
 from workhold.batch.durations import Measured
 from workhold.batch.run import Batch
 from workhold.batch.store import Store
-from workhold.batch.tables import JobRow, Row, job_rows, write_tables
-from workhold.drawing.panel import plural
-from workhold.errors import plain
-from workhold.files.atomic import plain_errors, text_file, write_bytes
+from workhold.batch.tables import JobRow, Row, list_job_rows, write_tables
+from workhold.drawing.panel import format_count
+from workhold.errors import make_printable
+from workhold.files.atomic import explain_system_errors, write_bytes, write_text_file
 
 __all__ = ["Report", "Summary", "write_results"]
 
@@ -147,9 +147,9 @@ class Report:
         if len(self.rows) >= MOST_ROWS:
             self.left_out += 1
             return
-        self.rows.append(self.line(row, self.picture(job), sheet))
+        self.rows.append(self.make_row(row, self.draw_first_choice(job), sheet))
 
-    def picture(self, job: JobRow) -> str:
+    def draw_first_choice(self, job: JobRow) -> str:
         """Return the first choice of a job, as far as there is room for it."""
         row = job.row
         if row["state"] != "held" or self.pictures >= MOST_PICTURES:
@@ -157,52 +157,52 @@ class Report:
         from workhold.drawing.fixture_pictures import draw_thumbnail
 
         self.pictures += 1
-        result = job.result(self.store)
+        result = job.read_job_result(self.store)
         svg = draw_thumbnail(result[0], result.workpiece, result.toolkit)
         words = f"First choice for {row['part']} in {row['toolkit']}"
-        return (
-            f'<img alt="{escaped(words)}" src="data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}">'
-        )
+        return f'<img alt="{escape_html(words)}" src="data:image/svg+xml;base64,{b64encode(svg.encode()).decode()}">'
 
-    def line(self, row: Row, picture: str, sheet: Path | None) -> str:
+    def make_row(self, row: Row, picture: str, sheet: Path | None) -> str:
         """Return the HTML of a row."""
         state = STATES[row["state"]][0] + (
             ", but none that a workshop can use" if row["fit"] is False else ""
         )
         why = " ".join(filter(None, (row["reason"], row["remarks"])))
         cells = [
-            cell(picture, key=""),
-            cell(escaped(row["part"]) + self.ways_on(row, sheet), key=escaped(row["part"])),
-            cell(escaped(row["toolkit"]), name="once"),
-            cell(
-                state + (f"<small>{escaped(why)}</small>" if why else ""), key=state, bad=row["state"] in BAD
+            make_cell(picture, key=""),
+            make_cell(escape_html(row["part"]) + self.make_links(row, sheet), key=escape_html(row["part"])),
+            make_cell(escape_html(row["toolkit"]), name="once"),
+            make_cell(
+                state + (f"<small>{escape_html(why)}</small>" if why else ""),
+                key=state,
+                bad=row["state"] in BAD,
             ),
-            figure(row["fixtures"], 0),
-            *(figure(row[key], decimals) for _, key, decimals in (*FIGURES, CLEARANCE)),
-            figure(row["seconds"], 2),
-            figure(row["estimated_seconds"], 2),
+            format_figure(row["fixtures"], 0),
+            *(format_figure(row[key], decimals) for _, key, decimals in (*FIGURES, CLEARANCE)),
+            format_figure(row["seconds"], 2),
+            format_figure(row["estimated_seconds"], 2),
         ]
         return f"<tr>{''.join(cells)}</tr>\n"
 
-    def ways_on(self, row: Row, sheet: Path | None) -> str:
+    def make_links(self, row: Row, sheet: Path | None) -> str:
         """Return how to get on from a row: its record, and its setup sheet or the line that makes it."""
         if row["state"] != "held":
             return ""
         if "://" in row["record"]:
             # In an object store: no command opens it there.
-            return f"<small>{escaped(row['record'])}</small>"
+            return f"<small>{escape_html(row['record'])}</small>"
         record = Path(row["record"])
         link = (
-            f'<a href="{escaped(record.relative_to(self.folder).as_posix())}">the best</a>'
+            f'<a href="{escape_html(record.relative_to(self.folder).as_posix())}">the best</a>'
             if record.is_relative_to(self.folder)
             else ""
         )
         if sheet is not None:
-            place = escaped(sheet.relative_to(self.folder).as_posix())
+            place = escape_html(sheet.relative_to(self.folder).as_posix())
             return f'<small>{link} <a href="{place}">setup sheet</a></small>'
         name = Path(row["part"]).stem
         line = f"workhold sheet {quote(str(record))} 1 --part-name {quote(name)} -o {quote(f'{name}.pdf')}"
-        code = f"<code>{escaped(line)}</code>"
+        code = f"<code>{escape_html(line)}</code>"
         return f"<small>{link}<details><summary>setup sheet</summary>{code}</details></small>"
 
     def write(self, path: Path, summary: Summary) -> None:
@@ -215,22 +215,23 @@ class Report:
             *(words for words, _, _ in (*FIGURES, CLEARANCE)),
         ]
         headings += ["seconds", "predicted s"]
-        with text_file(path) as stream:
-            stream.write(f"{HEAD}<h1>{escaped(summary.headline)}</h1>\n")
+        with write_text_file(path) as stream:
+            stream.write(f"{HEAD}<h1>{escape_html(summary.headline)}</h1>\n")
             for sentence in (self.counts, *summary.sentences):
-                stream.write(f"<p>{escaped(sentence)}</p>\n")
+                stream.write(f"<p>{escape_html(sentence)}</p>\n")
             if self.left_out:
                 stream.write(f"<p>The table of results lists {self.left_out:,} further jobs.</p>\n")
             if summary.events:
-                items = "".join(f"<li>{escaped(event)}</li>\n" for event in summary.events)
+                items = "".join(f"<li>{escape_html(event)}</li>\n" for event in summary.events)
                 stream.write(f"<h2>What happened on the way</h2>\n<ul>\n{items}</ul>\n")
             if self.bad:
-                stream.write(f"<h2>What failed, and why</h2>\n{self.failures()}")
+                stream.write(f"<h2>What failed, and why</h2>\n{self.list_failures()}")
             stream.write(
                 '<h2>All jobs</h2>\n<label>Only rows with <input id="filter" type="search"></label>\n'
             )
             heads = "".join(
-                f'<th scope="col"><button type="button">{escaped(words)}</button></th>' for words in headings
+                f'<th scope="col"><button type="button">{escape_html(words)}</button></th>'
+                for words in headings
             )
             stream.write(f'<div class="box"><table id="jobs"><thead><tr>{heads}</tr></thead><tbody>\n')
             stream.writelines(self.rows)
@@ -242,13 +243,13 @@ class Report:
         counted = [
             f"{self.states[state]:,} {words}" for state, (_, words) in STATES.items() if self.states[state]
         ]
-        return f"{plural(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
+        return f"{format_count(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
 
-    def failures(self) -> str:
+    def list_failures(self) -> str:
         """Return what failed, as HTML."""
         rows = "".join(
-            f"<tr><td>{escaped(part)}</td><td>{escaped(', '.join(toolkits))}</td>"
-            f"<td>{escaped(reason)}</td></tr>\n"
+            f"<tr><td>{escape_html(part)}</td><td>{escape_html(', '.join(toolkits))}</td>"
+            f"<td>{escape_html(reason)}</td></tr>\n"
             for (part, reason), toolkits in self.bad.items()
         )
         heads = "".join(f'<th scope="col">{words}</th>' for words in ("part", "in", "why"))
@@ -257,21 +258,21 @@ class Report:
         )
 
 
-def escaped(words: Any) -> str:
-    return escape(plain(str(words)))
+def escape_html(words: Any) -> str:
+    return escape(make_printable(str(words)))
 
 
-def cell(content: str, *, key: str | None = None, name: str = "", bad: bool = False) -> str:
+def make_cell(content: str, *, key: str | None = None, name: str = "", bad: bool = False) -> str:
     """Return a cell of HTML; ``key`` is what it is sorted by, if not its text."""
     classes = " ".join(filter(None, (name, "bad" if bad else "")))
     attributes = (f' class="{classes}"' if classes else "") + ("" if key is None else f' data-key="{key}"')
     return f"<td{attributes}>{content}</td>"
 
 
-def figure(value: float | None, decimals: int) -> str:
+def format_figure(value: float | None, decimals: int) -> str:
     if value is None:
-        return cell("", name="n")
-    return cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
+        return make_cell("", name="n")
+    return make_cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
 
 
 # Letters of a sheet's name that come of its part and toolkit, and of its record's name.
@@ -293,29 +294,29 @@ def write_results(
     ----------
     summary : what stands over the report.
     """
-    with plain_errors(folder):
+    with explain_system_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
     report = Report(folder, store)
-    for row in write_tables(job_rows(batch.jobs, store, measured), folder):
-        report.add(row, None if sheets is None else sheet_of(row, store, sheets))
+    for row in write_tables(list_job_rows(batch.jobs, store, measured), folder):
+        report.add(row, None if sheets is None else write_first_sheet(row, store, sheets))
     report.write(folder / report_name, summary)
     return report
 
 
-def sheet_of(row: JobRow, store: Store, folder: Path) -> Path | None:
+def write_first_sheet(row: JobRow, store: Store, folder: Path) -> Path | None:
     """Return the setup sheet of a job's first choice, written if it is not there; None without a fixture."""
     if row.row["state"] != "held":
         return None
     name = re.sub(r"[^\w.-]+", "_", f"{Path(row.row['part']).stem} in {row.job.held_in.name}")[:LONGEST_NAME]
     path = folder / f"{name}_{row.job.name[:LETTERS]}.pdf"
     if not path.exists():
-        from workhold.drawing.pdf import svg_to_pdf
-        from workhold.drawing.sheet import result_sheet
+        from workhold.drawing.pdf import convert_svg_to_pdf
+        from workhold.drawing.sheet import draw_setup_sheet
 
-        with plain_errors(folder):
+        with explain_system_errors(folder):
             folder.mkdir(parents=True, exist_ok=True)
         part_name = Path(row.row["part"]).stem
-        result = row.result(store)
-        pages = result_sheet(result, 1, result_hash=row.job.name, part_name=part_name, day=date.today())
-        write_bytes(path, svg_to_pdf(pages, date.today()))
+        result = row.read_job_result(store)
+        pages = draw_setup_sheet(result, 1, result_hash=row.job.name, part_name=part_name, day=date.today())
+        write_bytes(path, convert_svg_to_pdf(pages, date.today()))
     return path

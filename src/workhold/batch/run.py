@@ -16,13 +16,13 @@ from typing import Any, Protocol, TypeVar
 
 from attrs import define, field, frozen
 
-from workhold.batch.durations import Measured, answering_seconds, reading_seconds
-from workhold.batch.store import Store, plain_record
+from workhold.batch.durations import Measured, predict_answering_seconds, predict_reading_seconds
+from workhold.batch.store import Store, parse_record
 from workhold.batch.tasks import Answering, Outcome, Queue, Reading, Task, name_of
 from workhold.errors import InputError
 from workhold.files.part.finding import read_bytes
 from workhold.files.part_list import ListedPart
-from workhold.files.result.writer import asked_entry
+from workhold.files.result.writer import make_query_entry
 from workhold.model.query import Query
 from workhold.model.workpiece import Workpiece
 
@@ -56,7 +56,7 @@ class HeldIn:
         """
         if isinstance(self.query, InputError):
             raise self.query
-        return asked_entry(self.query)
+        return make_query_entry(self.query)
 
 
 @frozen(eq=False)
@@ -98,9 +98,9 @@ class Part:
     remarks: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, request: Request) -> Part:
+    def from_request(cls, request: Request) -> Part:
         try:
-            return cls(request, reading_of(request).name)
+            return cls(request, make_reading(request).name)
         except InputError as error:
             return cls(request, refusal=str(error))
 
@@ -115,7 +115,7 @@ class Part:
             self.size = (width, height)
 
 
-def reading_of(request: Request) -> Reading:
+def make_reading(request: Request) -> Reading:
     path = request.listed.path
     content = read_bytes(path)
     ending = Path(path).suffix.lower()
@@ -148,7 +148,7 @@ class Job:
         """What it is called where people see it."""
         return f"{self.part.request.listed.name} in {self.held_in.name}"
 
-    def answering(self, record: bytes, best: int) -> Answering:
+    def make_answering(self, record: bytes, best: int) -> Answering:
         assert isinstance(self.held_in.query, Query)
         return Answering(self.name, self.title, record, self.held_in.query, best)
 
@@ -159,10 +159,10 @@ T = TypeVar("T", Part, Job)
 class Counting(Protocol):
     """Who counts along."""
 
-    def stage(self, doing: str, count: int, seconds: float) -> None:
+    def begin_stage(self, doing: str, count: int, seconds: float) -> None:
         """Begin a stage of ``count`` tasks, which are predicted to take ``seconds`` of one processor."""
 
-    def one_done(self, seconds: float) -> None:
+    def count_done(self, seconds: float) -> None:
         """Count one of these tasks as done, which was predicted to take ``seconds``."""
 
 
@@ -215,14 +215,14 @@ class BatchRun:
         for item in items:
             by_name.setdefault(item.name, item)
         reckoned = {name: seconds(item) for name, item in by_name.items() if not self.store.has(name)}
-        self.counting.stage(doing, len(reckoned), sum(reckoned.values()))
+        self.counting.begin_stage(doing, len(reckoned), sum(reckoned.values()))
         outcomes: dict[str, Outcome] = {}
 
         def tasks() -> Iterator[Task]:
             for name in sorted(reckoned, key=reckoned.__getitem__, reverse=True):
                 if self.store.has(name):
                     # Another run has done it meanwhile.
-                    self.counting.one_done(reckoned[name])
+                    self.counting.count_done(reckoned[name])
                     continue
                 try:
                     task = task_of(by_name[name])
@@ -242,7 +242,7 @@ class BatchRun:
             if not outcome.failure:
                 self.keep(outcome)
             outcomes[outcome.name] = outcome
-            self.counting.one_done(reckoned[outcome.name])
+            self.counting.count_done(reckoned[outcome.name])
         return outcomes, len(by_name) - len(reckoned)
 
     def keep(self, outcome: Outcome) -> None:
@@ -270,9 +270,9 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
     InputError
         When records cannot be kept, or there are no workers.
     """
-    batch = Batch([Part.of(request) for request in requests])
+    batch = Batch([Part.from_request(request) for request in requests])
     read_parts(batch, work)
-    batch.jobs = [job for part in batch.parts for job in jobs_of(part, best)]
+    batch.jobs = [job for part in batch.parts for job in list_jobs(part, best)]
     jobs = [job for job in batch.jobs if job.name]
     if not work.stop.is_set():
 
@@ -280,7 +280,7 @@ def run_batch(requests: Iterable[Request], best: int, work: BatchRun) -> Batch:
             record = work.store.read(job.part.name)
             if record is None:
                 raise InputError("The record of its part is gone: start the batch again.")
-            return job.answering(record, best)
+            return job.make_answering(record, best)
 
         outcomes, batch.kept = work.do("Searching", jobs, lambda job: job.estimate, task_of)
         for job in jobs:
@@ -297,18 +297,18 @@ def read_parts(batch: Batch, work: BatchRun) -> None:
 
     def seconds(part: Part) -> float:
         path = part.request.listed.path
-        return reading_seconds(path.suffix, path.stat().st_size if path.is_file() else 0)
+        return predict_reading_seconds(path.suffix, path.stat().st_size if path.is_file() else 0)
 
-    outcomes, _ = work.do("Reading", parts, seconds, lambda part: reading_of(part.request))
+    outcomes, _ = work.do("Reading", parts, seconds, lambda part: make_reading(part.request))
     for part in parts:
         record = work.store.read(part.name)
         if record is not None:
-            part.take(plain_record(record))
+            part.take(parse_record(record))
         elif part.name in outcomes:
             part.refusal = outcomes[part.name].failure
 
 
-def jobs_of(part: Part, best: int) -> Iterator[Job]:
+def list_jobs(part: Part, best: int) -> Iterator[Job]:
     """Yield the jobs of a part; those without a name have no task."""
     for held_in in part.request.held_in:
         if part.refusal or not part.content:
@@ -321,5 +321,8 @@ def jobs_of(part: Part, best: int) -> Iterator[Job]:
             continue
         assert isinstance(held_in.query, Query)
         yield Job(
-            part, held_in, name, estimate=answering_seconds(part.faces, part.size, held_in.query.toolkit)
+            part,
+            held_in,
+            name,
+            estimate=predict_answering_seconds(part.faces, part.size, held_in.query.toolkit),
         )

@@ -26,9 +26,9 @@ from typing import Any, Protocol
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.atomic import plain_errors, write_bytes
+from workhold.files.atomic import explain_system_errors, write_bytes
 from workhold.files.budget import FileLimits
-from workhold.files.result.writer import outlines_entry, solid_entry, workpiece_entry
+from workhold.files.result.writer import make_own_outlines_entry, make_solid_entry, make_workpiece_entry
 from workhold.files.text import read_limited
 from workhold.model.own_outlines import add_own_outlines
 from workhold.model.solid import SolidOutline
@@ -41,11 +41,11 @@ __all__ = [
     "Store",
     "UrlStore",
     "is_whole",
-    "part_record",
-    "plain_record",
-    "refusal_record",
+    "make_part_record",
+    "parse_record",
+    "make_refusal_record",
     "store_at",
-    "workpiece_of",
+    "read_workpiece_record",
 ]
 
 PART, REFUSAL = "workhold-part/1", "workhold-refusal/1"
@@ -56,31 +56,36 @@ RECORD = FileLimits("a record", None)
 FIRST, LAST = b'{"format": "workhold-', b"]}\n"
 
 
-def part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
-    about = {"format": PART, **workpiece_entry(workpiece), **solid_entry(workpiece.solid), "name": PART_NAME}
+def make_part_record(workpiece: Workpiece, remarks: Sequence[str]) -> bytes:
+    about = {
+        "format": PART,
+        **make_workpiece_entry(workpiece),
+        **make_solid_entry(workpiece.solid),
+        "name": PART_NAME,
+    }
     heights = {
         role: (one.solid.low, one.solid.peg_height)
         for role, one in workpiece.outlines
         if one.solid is not None
     }
     if heights:
-        about |= {**outlines_entry(workpiece), "heights": heights}
+        about |= {**make_own_outlines_entry(workpiece), "heights": heights}
     x0, y0, x1, y1 = workpiece.bounds
-    return ended(
+    return end_record(
         about | {"faces": len(workpiece.faces), "size": [x1 - x0, y1 - y0], "remarks": list(remarks)}
     )
 
 
-def refusal_record(sentence: str) -> bytes:
-    return ended({"format": REFUSAL, "refusal": [sentence]})
+def make_refusal_record(sentence: str) -> bytes:
+    return end_record({"format": REFUSAL, "refusal": [sentence]})
 
 
-def ended(content: dict[str, Any]) -> bytes:
+def end_record(content: dict[str, Any]) -> bytes:
     """Return a record whose last entry is a list, so that it ends as every record does."""
     return json.dumps(content).encode() + b"\n"
 
 
-def checksum(name: str, content: bytes) -> bytes:
+def make_checksum_line(name: str, content: bytes) -> bytes:
     """Return the line that stands beside a record: the SHA-256 of its task's name and its bytes."""
     return sha256(name.encode() + b"\n" + content).hexdigest().encode() + b"\n"
 
@@ -88,22 +93,22 @@ def checksum(name: str, content: bytes) -> bytes:
 def is_whole(name: str, content: bytes, line: bytes) -> bool:
     """Return whether bytes are the record of a task: they begin and end as one does, and have its checksum.
 
-    >>> record = refusal_record("no")
-    >>> line = checksum("a", record)
+    >>> record = make_refusal_record("no")
+    >>> line = make_checksum_line("a", record)
     >>> [is_whole("a", *one) for one in ((record, line), (record[:-1], line), (b"", line), (record, b""))]
     [True, False, False, False]
     """
-    return content.startswith(FIRST) and content.endswith(LAST) and line == checksum(name, content)
+    return content.startswith(FIRST) and content.endswith(LAST) and line == make_checksum_line(name, content)
 
 
-def plain_record(content: bytes) -> dict[str, Any]:
-    """A record as plain data; the sentence of a refusal is under ``refusal``, of all others that is empty."""
+def parse_record(content: bytes) -> dict[str, Any]:
+    """Return a record as plain data; the sentence of a refusal is under ``refusal``, of all others that is empty."""
     data: dict[str, Any] = json.loads(content)
     data["refusal"] = data["refusal"][0] if data["format"] == REFUSAL else ""
     return data
 
 
-def workpiece_of(record: dict[str, Any]) -> Workpiece:
+def read_workpiece_record(record: dict[str, Any]) -> Workpiece:
     solid = SolidOutline.of_entries(record["solid"], record) if record.get("solid") else None
     workpiece = Workpiece.from_loops(PART_NAME, record["loops"], None, record["departure"], solid)
     if "outlines" not in record:
@@ -115,7 +120,7 @@ def workpiece_of(record: dict[str, Any]) -> Workpiece:
 CHECKSUM = ".sha256"
 
 
-def beside(path: str) -> str:
+def make_checksum_path(path: str) -> str:
     """Return the path of the checksum of the record at a path of an object store."""
     return path.removesuffix(".json") + CHECKSUM
 
@@ -148,7 +153,7 @@ class Store(Protocol):
     def place(self, name: str) -> str:
         """Return where the record of a task is, or would be."""
 
-    def file(self, name: str) -> AbstractContextManager[Path]:
+    def open_record(self, name: str) -> AbstractContextManager[Path]:
         """Return the record of a task that is done, as a file as long as the block runs."""
 
 
@@ -164,14 +169,14 @@ class FolderStore(Store):
     folder: Path
 
     def place(self, name: str) -> str:
-        return str(self.path(name))
+        return str(self.make_record_path(name))
 
-    def path(self, name: str) -> Path:
+    def make_record_path(self, name: str) -> Path:
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
         """Return a record, if it is whole."""
-        path = self.path(name)
+        path = self.make_record_path(name)
         try:
             content, line = (read_limited(file, RECORD) for file in (path, path.with_suffix(CHECKSUM)))
         except InputError:
@@ -179,16 +184,16 @@ class FolderStore(Store):
         return content if is_whole(name, content, line) else None
 
     @contextmanager
-    def file(self, name: str) -> Iterator[Path]:
-        """The file of a record; see :meth:`Store.file`."""
-        yield self.path(name)
+    def open_record(self, name: str) -> Iterator[Path]:
+        """Yield the file of a record; see :meth:`Store.open_record`."""
+        yield self.make_record_path(name)
 
     def write(self, name: str, record: bytes) -> None:
         """Write a record; see :meth:`Store.write`."""
-        path = self.path(name)
-        with plain_errors(path):
+        path = self.make_record_path(name)
+        with explain_system_errors(path):
             path.parent.mkdir(parents=True, exist_ok=True)
-        write_bytes(path.with_suffix(CHECKSUM), checksum(name, record))
+        write_bytes(path.with_suffix(CHECKSUM), make_checksum_line(name, record))
         write_bytes(path, record)
 
 
@@ -206,7 +211,7 @@ class UrlStore(Store):
     def place(self, name: str) -> str:
         return f"{self.url}/{name[:FOLDER_LETTERS]}/{name}.json"
 
-    def at(self, name: str) -> tuple[Any, str]:
+    def locate_record(self, name: str) -> tuple[Any, str]:
         """Return the file system of a record, and its path there."""
         from fsspec.core import url_to_fs
 
@@ -215,26 +220,26 @@ class UrlStore(Store):
 
     def read(self, name: str) -> bytes | None:
         """Return a record, if it is whole."""
-        system, path = self.at(name)
+        system, path = self.locate_record(name)
         try:
             content: bytes = system.cat_file(path)
-            line: bytes = system.cat_file(beside(path))
+            line: bytes = system.cat_file(make_checksum_path(path))
         except OSError:
             return None
         return content if is_whole(name, content, line) else None
 
     def write(self, name: str, record: bytes) -> None:
         """Keep a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
-        system, path = self.at(name)
+        system, path = self.locate_record(name)
         try:
             system.makedirs(path.rpartition("/")[0], exist_ok=True)
-            system.pipe_file(beside(path), checksum(name, record))
+            system.pipe_file(make_checksum_path(path), make_checksum_line(name, record))
             system.pipe_file(path, record)
         except OSError as error:
             raise InputError(f"{self.place(name)} cannot be written: {error.strerror or error}.") from error
 
     @contextmanager
-    def file(self, name: str) -> Iterator[Path]:
+    def open_record(self, name: str) -> Iterator[Path]:
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             path = Path(folder) / f"{name}.json"
             path.write_bytes(self.read(name) or b"")

@@ -17,16 +17,25 @@ from attrs import frozen
 
 from workhold.batch.durations import Measured
 from workhold.batch.run import Job
-from workhold.batch.store import Store, plain_record
-from workhold.errors import encodable
-from workhold.files.atomic import binary_file, text_file
+from workhold.batch.store import Store, parse_record
+from workhold.errors import make_encodable
+from workhold.files.atomic import write_binary_file, write_text_file
 from workhold.model.notes import Many, round_to_two_digits
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.statics.judging import is_unfit
 
-__all__ = ["BEST", "MARK", "RESULTS", "JobRow", "has_parquet", "job_rows", "table_names", "write_tables"]
+__all__ = [
+    "BEST",
+    "MARK",
+    "RESULTS",
+    "JobRow",
+    "has_parquet",
+    "list_job_rows",
+    "list_table_names",
+    "write_tables",
+]
 
 # By which a table is known as one of workhold's own, see ``cli.outputs``.
 MARK = "workhold-table/1"
@@ -70,15 +79,15 @@ class JobRow:
     row: Row
     best: Sequence[Row]
 
-    def result(self, store: Store) -> Result:
+    def read_job_result(self, store: Store) -> Result:
         """Return the result of a job that is done, as the command that shows it would read it."""
         from workhold.files.result.reader import read_result
 
-        with store.file(self.job.name) as path:
+        with store.open_record(self.job.name) as path:
             return read_result(path)
 
 
-def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[JobRow]:
+def list_job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[JobRow]:
     for job in jobs:
         part, query = job.part, job.held_in.query
         listed = part.request.listed
@@ -91,7 +100,7 @@ def job_rows(jobs: Sequence[Job], store: Store, measured: Measured) -> Iterator[
         best: list[Row] = []
         record = store.read(job.name) if job.name else None
         if record is not None:
-            best = take_record(row, named, plain_record(record), job)
+            best = take_record(row, named, parse_record(record), job)
             row["record"] = store.place(job.name)
             best = [one | {"record": row["record"]} for one in best]
         elif job.refusal:
@@ -117,7 +126,7 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
     }
     row["reason"] = " ".join(record["notes"]) or None
     best = [
-        dict.fromkeys(BEST) | named | fixture_row(fixture, job) | {"rank": rank}
+        dict.fromkeys(BEST) | named | make_fixture_row(fixture, job) | {"rank": rank}
         for rank, fixture in enumerate(record["fixtures"], 1)
     ]
     if best:
@@ -136,7 +145,7 @@ def is_pressed(fixture: Mapping[str, Any]) -> bool:
     return touched and bool(fixture["quality"]["full_contact"])
 
 
-def jaws_row(fixture: Mapping[str, Any]) -> Row:
+def make_jaws_row(fixture: Mapping[str, Any]) -> Row:
     """Return the row of a fixture that flat jaws hold; it has no holes, and no figures of pegs."""
     faces = [number for jaw in ("fixed", "moving") for number in fixture[jaw]["segments"]]
     return {
@@ -149,19 +158,19 @@ def jaws_row(fixture: Mapping[str, Any]) -> Row:
     }
 
 
-def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
-    from workhold.files.result.fixture_forms import seating_figures_of
-    from workhold.files.result.reader import peg_place
+def make_fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
+    from workhold.files.result.fixture_forms import collect_seating_figures
+    from workhold.files.result.reader import read_peg_place
 
     assert isinstance(job.held_in.query, Query)
     if "pegs" not in fixture:
-        return jaws_row(fixture)
+        return make_jaws_row(fixture)
     carriers = {carrier.name: carrier for carrier in job.held_in.query.toolkit.carriers}
     directions = fixture.get("directions")
     direction = fixture.get("direction") if directions is None else " ".join(directions)
     holes = []
     for peg in fixture["pegs"]:
-        carrier, *place = peg_place(peg, direction if directions is None else peg.get("direction"))
+        carrier, *place = read_peg_place(peg, direction if directions is None else peg.get("direction"))
         holes.append(carriers[carrier].place_name(*place))
     row: Row = {
         "type": fixture["type"],
@@ -173,7 +182,7 @@ def fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
         **fixture["quality"],
     }
     if (seating := fixture.get("seating")) is not None:
-        row |= seating_figures_of(seating)
+        row |= collect_seating_figures(seating)
     if (passing := fixture.get("program_clearance")) is not None:
         row[PROGRAM_FIGURE.key] = passing["distance"]
         row |= {f"program_{name}": passing[name] for name in ("line", "tool", "element")}
@@ -184,7 +193,7 @@ def has_parquet() -> bool:
     return find_spec("pyarrow") is not None
 
 
-def table_names() -> tuple[str, str]:
+def list_table_names() -> tuple[str, str]:
     """Return the files of the two tables, as they can be written here."""
     ending = "parquet" if has_parquet() else "csv"
     return f"results.{ending}", f"best.{ending}"
@@ -192,11 +201,11 @@ def table_names() -> tuple[str, str]:
 
 def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
     """Write both tables of a folder and passes the rows on; files take their names at the end."""
-    table = parquet_table if has_parquet() else csv_table
+    table = write_parquet_table if has_parquet() else write_csv_table
     with ExitStack() as files:
         add_results, add_best = (
             files.enter_context(table(folder / name, columns))
-            for name, columns in zip(table_names(), (RESULTS, BEST), strict=True)
+            for name, columns in zip(list_table_names(), (RESULTS, BEST), strict=True)
         )
         waiting: list[JobRow] = []
 
@@ -213,44 +222,47 @@ def write_tables(rows: Iterator[JobRow], folder: Path) -> Iterator[JobRow]:
         add_waiting()
 
 
-def cell(value: Any) -> Any:
+def convert_cell(value: Any) -> Any:
     if isinstance(value, str):
-        return encodable(value)
+        return make_encodable(value)
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:.12g}" if isinstance(value, float) else value
 
 
 @contextmanager
-def csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
-    """A table as comma-separated values, as a function that adds rows to it."""
-    with text_file(path) as stream:
+def write_csv_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
+    """Yield a table as comma-separated values, as a function that adds rows to it."""
+    with write_text_file(path) as stream:
         writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
         writer.writeheader()
 
         def add(rows: Sequence[Row]) -> None:
-            writer.writerows({key: cell(value) for key, value in row.items()} for row in rows)
+            writer.writerows({key: convert_cell(value) for key, value in row.items()} for row in rows)
 
         yield add
 
 
 @contextmanager
-def parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
-    """A table as Parquet, as a function that adds rows to it; the same rows give the same bytes."""
+def write_parquet_table(path: Path, columns: Mapping[str, type]) -> Iterator[AddRows]:
+    """Yield a table as Parquet, as a function that adds rows to it; the same rows give the same bytes."""
     import pyarrow
     from pyarrow import parquet
 
     kinds = {str: pyarrow.string(), int: pyarrow.int64(), float: pyarrow.float64(), bool: pyarrow.bool_()}
     schema = pyarrow.schema([(name, kinds[kind]) for name, kind in columns.items()])
     with (
-        binary_file(path) as stream,
+        write_binary_file(path) as stream,
         parquet.ParquetWriter(stream, schema, compression="zstd", store_schema=False) as writer,
     ):
 
         def add(rows: Sequence[Row]) -> None:
             if rows:
                 written = [
-                    {key: encodable(value) if isinstance(value, str) else value for key, value in row.items()}
+                    {
+                        key: make_encodable(value) if isinstance(value, str) else value
+                        for key, value in row.items()
+                    }
                     for row in rows
                 ]
                 writer.write_table(pyarrow.Table.from_pylist(written, schema=schema))

@@ -26,7 +26,14 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 
 from workhold import conventions
-from workhold.batch.store import PART, REFUSAL, part_record, plain_record, refusal_record, workpiece_of
+from workhold.batch.store import (
+    PART,
+    REFUSAL,
+    make_part_record,
+    make_refusal_record,
+    parse_record,
+    read_workpiece_record,
+)
 from workhold.errors import NO_ROOM, InputError, WorkholdError, lacks_memory
 from workhold.files.budget import LIMITS
 from workhold.files.result.writer import FORMAT
@@ -42,9 +49,9 @@ __all__ = [
     "Reading",
     "Task",
     "Watcher",
-    "done",
+    "run_task",
     "name_of",
-    "program",
+    "identify_program",
 ]
 
 # The clock's seconds for each of the processor's on a machine that others use too.
@@ -54,7 +61,7 @@ LETTERS = 32
 
 
 @cache
-def program() -> str:
+def identify_program() -> str:
     """Return the program's version, and a hash of what in it decides outcomes: equal on every machine."""
     numbers = sorted((name, value) for name, value in vars(conventions).items() if name.isupper())
     content = repr((ANSWERS, FORMAT, PART, REFUSAL, numbers))
@@ -67,7 +74,7 @@ def name_of(*content: Any) -> str:
     >>> name_of(b"part", {"best": 3}) == name_of(b"part", {"best": 3}), len(name_of())
     (True, 32)
     """
-    digest = sha256(program().encode())
+    digest = sha256(identify_program().encode())
     for item in content:
         data = item if isinstance(item, bytes) else json.dumps(item, sort_keys=True).encode()
         # Its length in front, so that what belongs to one item cannot be taken for the next.
@@ -88,7 +95,7 @@ class Task:
 
     name: str
     title: str
-    program: str = field(factory=program, kw_only=True)
+    program: str = field(factory=identify_program, kw_only=True)
 
     @property
     def most_seconds(self) -> float:
@@ -96,7 +103,7 @@ class Task:
         return inf
 
     def prepare(self) -> None:
-        """Loads what the work needs.
+        """Load what the work needs.
 
         Raises
         ------
@@ -105,7 +112,7 @@ class Task:
         """
         raise NotImplementedError
 
-    def record(self) -> bytes:
+    def make_record(self) -> bytes:
         """Do the work; refuse what cannot be read or asked."""
         raise NotImplementedError
 
@@ -128,15 +135,15 @@ class Reading(Task):
     @property
     def most_seconds(self) -> float:
         """Ten times the processor time after which readers give a file up, for a machine that is busy."""
-        return MOST_BUSY * max(one.seconds_for(len(self.content)) or 0.0 for one in LIMITS.values())
+        return MOST_BUSY * max(one.allow_seconds_for(len(self.content)) or 0.0 for one in LIMITS.values())
 
     def prepare(self) -> None:
-        """Loads the readers' kernels."""
+        """Load the readers' kernels."""
         import workhold.geometry.loop
         import workhold.kernels.base.distance  # noqa: F401
 
-    def record(self) -> bytes:
-        """Return the part; see :meth:`Task.record`."""
+    def make_record(self) -> bytes:
+        """Return the part; see :meth:`Task.make_record`."""
         from workhold.files.part_list import ListedPart, read_listed
 
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
@@ -146,7 +153,7 @@ class Reading(Task):
         if read.loaded is None:
             # Its user knows the file by another name.
             raise InputError(read.refusal.removeprefix(f"{path.name}: "))
-        return part_record(read.loaded.workpiece, read.loaded.remarks)
+        return make_part_record(read.loaded.workpiece, read.loaded.remarks)
 
 
 @frozen
@@ -167,25 +174,25 @@ class Answering(Task):
     def prepare(self) -> None:
         import workhold.search.design  # noqa: F401
 
-    def record(self) -> bytes:
-        """Return the result file; see :meth:`Task.record`."""
-        from workhold.files.result.writer import result_text
+    def make_record(self) -> bytes:
+        """Return the result file; see :meth:`Task.make_record`."""
+        from workhold.files.result.writer import write_result_text
         from workhold.model.notes import Many
         from workhold.search.design import answer
         from workhold.search.estimate import MANY, estimate_fixtures
 
-        query = evolve(self.query, workpiece=workpiece_of(plain_record(self.part)))
+        query = evolve(self.query, workpiece=read_workpiece_record(parse_record(self.part)))
         count = estimate_fixtures(query, threads=1)
         if count is not None and count > MANY:
             result = answer(evolve(query, best=self.best), threads=1)
             made = evolve(result, notes=(Many(count, len(result)), *result.notes))
-            return "".join(result_text(made)).encode()
+            return "".join(write_result_text(made)).encode()
         with tempfile.TemporaryDirectory(prefix="workhold-") as folder:
             kept = FirstFixtures(self.best, Path(folder))
             result = answer(query, threads=1, sink=kept)
         table = FixtureTable.empty(query.toolkit) if kept.table is None else kept.table
         made = evolve(kept.result or result, query=evolve(query, best=self.best), table=table)
-        return "".join(result_text(made)).encode()
+        return "".join(write_result_text(made)).encode()
 
 
 @define(eq=False)
@@ -242,15 +249,15 @@ class Outcome:
     has_no_room: bool = False
 
 
-def done(task: Task, worker: str = "") -> Outcome:
+def run_task(task: Task, worker: str = "") -> Outcome:
     """Do a task, whatever comes of it."""
     start = perf_counter()
     record, failure, has_no_room = None, "", False
     try:
         make_ready(task)
-        record = task.record()
+        record = task.make_record()
     except InputError as error:
-        record = refusal_record(str(error))
+        record = make_refusal_record(str(error))
     except UnfitWorkerError as error:
         failure = str(error)
     except Exception as error:
@@ -281,9 +288,9 @@ def make_ready(task: Task) -> None:
 
     Raises UnfitWorkerError when the worker has another program, or lacks something.
     """
-    if task.program != program():
+    if task.program != identify_program():
         raise UnfitWorkerError(
-            f"The worker has another version of workhold than the command ({program()} and "
+            f"The worker has another version of workhold than the command ({identify_program()} and "
             f"{task.program}): install the same version on both."
         )
     try:
@@ -295,11 +302,11 @@ def make_ready(task: Task) -> None:
 class Watcher(Protocol):
     """Who looks on."""
 
-    def begun(self, worker: str, title: str) -> None:
-        """A worker begins with a task."""
+    def note_begun(self, worker: str, title: str) -> None:
+        """Note that a worker begins with a task."""
 
-    def ended(self, worker: str) -> None:
-        """A worker has nothing to do, or is no more."""
+    def note_ended(self, worker: str) -> None:
+        """Note that a worker has nothing to do, or has ended."""
 
     def notify(self, sentence: str) -> None:
         """Pass on a sentence about what happened, such as the death of a worker."""

@@ -21,9 +21,9 @@ from typing import Any
 
 from attrs import define, evolve, field
 
-from workhold.batch.tasks import Outcome, Task, Watcher, done
+from workhold.batch.tasks import Outcome, Task, Watcher, run_task
 from workhold.errors import InputError
-from workhold.web.worker import discard_folders, worker_main
+from workhold.web.worker import discard_folders, run_tasks
 
 __all__ = ["LocalWorkers"]
 
@@ -39,8 +39,8 @@ LEAST_MEMORY = 2 << 30
 ENDLESS = 1e8
 
 
-def memory_share(workers: int) -> int:
-    """Bytes for each of some workers: an equal share of this machine's memory, but enough to work with."""
+def compute_memory_share(workers: int) -> int:
+    """Return the bytes for each of some workers: an equal share of this machine's memory, but enough to work with."""
     try:
         whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     except (AttributeError, OSError, ValueError):
@@ -48,8 +48,8 @@ def memory_share(workers: int) -> int:
     return max(whole // workers, LEAST_MEMORY)
 
 
-def worker(connection: Connection, memory_bytes: int) -> None:
-    worker_main(connection, memory_bytes, {"task": lambda task, _: done(task)}, lambda: None)
+def run_worker(connection: Connection, memory_bytes: int) -> None:
+    run_tasks(connection, memory_bytes, {"task": lambda task, _: run_task(task)}, lambda: None)
 
 
 @define(eq=False)
@@ -100,7 +100,7 @@ class LocalWorkers:
             self.workers.pop().end()
 
     def run(self, tasks: Iterator[Task], stop: Event) -> Iterator[Outcome]:
-        """Outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
+        """Yield the outcomes of tasks as they come; see :class:`workhold.batch.tasks.Queue`."""
         waiting: deque[Task] = deque()
         deaths = Counter[str]()
         while not stop.is_set():
@@ -108,22 +108,22 @@ class LocalWorkers:
             self.hand_out(waiting)
             if not any(one.task for one in self.workers) and not waiting:
                 return
-            for one in self.heard():
-                outcome = self.hear(one)
+            for one in self.wait_for_workers():
+                outcome = self.receive_outcome(one)
                 if outcome is None and one.task is not None and one not in self.workers:
                     deaths[one.task.name] += 1
-                    outcome = self.lost(one, one.task, deaths[one.task.name])
+                    outcome = self.replace_lost_worker(one, one.task, deaths[one.task.name])
                     if outcome is None:
                         waiting.appendleft(one.task)
                 if outcome is not None:
                     yield outcome
-            yield from self.late()
+            yield from self.end_late_workers()
         # What was begun is given up; its worker could not be stopped at once.
         for one in [one for one in self.workers if one.task is not None]:
             self.drop(one)
 
-    def late(self) -> Iterator[Outcome]:
-        """End the workers whose tasks take longer than they may, and says so."""
+    def end_late_workers(self) -> Iterator[Outcome]:
+        """End the workers whose tasks take longer than they may, and say so."""
         for one in [one for one in self.workers if one.task is not None and monotonic() > one.ends_at]:
             task = one.task
             assert task is not None
@@ -143,20 +143,20 @@ class LocalWorkers:
                 self.give(one, waiting.popleft())
         free = sum(one.task is None for one in self.workers)
         for _ in range(min(len(waiting) - free, self.count - len(self.workers))):
-            self.workers.append(self.started(self.free_title()))
+            self.workers.append(self.start_worker(self.find_free_title()))
 
-    def free_title(self) -> str:
+    def find_free_title(self) -> str:
         taken = {one.title for one in self.workers}
         return next(
             title for title in (f"worker {k}" for k in range(1, self.count + 1)) if title not in taken
         )
 
-    def started(self, title: str) -> Worker:
+    def start_worker(self, title: str) -> Worker:
         context = get_context("spawn")
         ours, theirs = context.Pipe()
-        memory = memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
-        process = context.Process(target=worker, args=(theirs, memory), daemon=True)
-        with deaf_children():
+        memory = compute_memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
+        process = context.Process(target=run_worker, args=(theirs, memory), daemon=True)
+        with block_interrupts_in_children():
             process.start()
         theirs.close()
         return Worker(title, process, ours)
@@ -165,16 +165,16 @@ class LocalWorkers:
         """Give a task to a worker; that a dead one cannot take it shows when it is heard."""
         one.task, one.seconds = task, min(self.seconds, task.most_seconds)
         one.ends_at = monotonic() + one.seconds
-        self.watcher.begun(one.title, task.title)
+        self.watcher.note_begun(one.title, task.title)
         with suppress(OSError):
             one.connection.send((1, "task", ENDLESS, task))
 
-    def heard(self) -> list[Worker]:
+    def wait_for_workers(self) -> list[Worker]:
         """Return the workers that have something to say, or are no more, after a moment at most."""
         ready = wait([one.connection for one in self.workers], LOOK)
         return [one for one in self.workers if one.connection in ready]
 
-    def hear(self, one: Worker) -> Outcome | None:
+    def receive_outcome(self, one: Worker) -> Outcome | None:
         """Return what a worker says: an outcome; None when it is ready for the first time, or is no more."""
         try:
             kind, _, value = one.connection.recv()
@@ -188,7 +188,7 @@ class LocalWorkers:
             one.is_ready, self.failed_starts = True, 0
             return None
         task, one.task = one.task, None
-        self.watcher.ended(one.title)
+        self.watcher.note_ended(one.title)
         assert task is not None
         if kind != "done":
             return Outcome(task.name, None, str(value), worker=one.title)
@@ -199,20 +199,20 @@ class LocalWorkers:
         """Close the pipe to a worker, which ends it."""
         self.workers.remove(one)
         one.end()
-        self.watcher.ended(one.title)
+        self.watcher.note_ended(one.title)
 
     def refuse_failed_starts(self, one: Worker) -> None:
         """Raise an error when one worker after the other ends before it is ready."""
         self.failed_starts += 1
         if self.failed_starts >= MOST_FAILED_STARTS:
             raise InputError(
-                f"worker processes cannot be started: {self.failed_starts} in a row ended {ended_by(one)} "
+                f"worker processes cannot be started: {self.failed_starts} in a row ended {explain_worker_end(one)} "
                 "before they were ready; give them more memory, or fewer of them."
             )
 
-    def lost(self, one: Worker, task: Task, times: int) -> Outcome | None:
-        """Reports a worker that died during a task, and fails the task if it has been tried before."""
-        how = ended_by(one)
+    def replace_lost_worker(self, one: Worker, task: Task, times: int) -> Outcome | None:
+        """Report a worker that died during a task, and fail the task if it has been tried before."""
+        how = explain_worker_end(one)
         if times < MOST_TRIES:
             self.watcher.notify(
                 f"{one.title} ended {how} while it worked on {task.title}. Another worker tries it again."
@@ -228,14 +228,14 @@ class LocalWorkers:
         return Outcome(task.name, None, words, worker=one.title)
 
 
-def ended_by(one: Worker) -> str:
+def explain_worker_end(one: Worker) -> str:
     code = one.process.exitcode
     return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
 
 
 @contextmanager
-def deaf_children() -> Iterator[None]:
-    """Blocks Ctrl-C for processes started meanwhile, from their first moment; this one hears it later."""
+def block_interrupts_in_children() -> Iterator[None]:
+    """Block Ctrl-C for processes started meanwhile, from their first moment; this one hears it later."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

@@ -28,9 +28,9 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.files.result.fixture_text import fixture_lines
-from workhold.files.result.writer import head as result_head
-from workhold.fixels.kinds import toolkit_of
+from workhold.files.result.fixture_text import write_fixture_lines
+from workhold.files.result.writer import make_head as result_head
+from workhold.fixels.kinds import make_toolkit
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
@@ -41,13 +41,13 @@ __all__ = [
     "FORMAT",
     "SetEntry",
     "SetText",
-    "data_bytes",
-    "manifest",
-    "query_of",
+    "read_benchmark_file",
+    "load_manifest",
+    "make_set_query",
     "set_named",
     "set_text",
-    "sets",
-    "sums_of",
+    "load_sets",
+    "compute_checksums",
 ]
 
 HOME = "benchmark"
@@ -76,7 +76,7 @@ class SetEntry:
     listing : of two clamps, "all"; None for other toolkits.
     reason : why it is in the benchmark.
     counts : how many fixtures of each type the complete list has.
-    sums : checksums, see :func:`sums_of`.
+    sums : checksums, see :func:`compute_checksums`.
     """
 
     name: str
@@ -93,19 +93,19 @@ class SetEntry:
         return sum(self.counts.values())
 
 
-def data_bytes(name: str) -> bytes:
+def read_benchmark_file(name: str) -> bytes:
     """Return the content of a file of the benchmark, such as ``check.py`` or ``parts/kite.json``."""
     return (files("workhold") / "data" / HOME).joinpath(*name.split("/")).read_bytes()
 
 
 @cache
-def manifest() -> Mapping[str, Any]:
-    content: dict[str, Any] = json.loads(data_bytes(MANIFEST))
+def load_manifest() -> Mapping[str, Any]:
+    content: dict[str, Any] = json.loads(read_benchmark_file(MANIFEST))
     return content
 
 
 @cache
-def sets() -> tuple[SetEntry, ...]:
+def load_sets() -> tuple[SetEntry, ...]:
     """Return all sets, in the order of the manifest."""
     return tuple(
         SetEntry(
@@ -117,7 +117,7 @@ def sets() -> tuple[SetEntry, ...]:
             counts=one["counts"],
             sums=one["sums"],
         )
-        for one in manifest()["sets"]
+        for one in load_manifest()["sets"]
     )
 
 
@@ -129,7 +129,7 @@ def set_named(name: str) -> SetEntry:
     InputError
         For a name that no set has, with those that are close.
     """
-    by_name = {one.name: one for one in sets()}
+    by_name = {one.name: one for one in load_sets()}
     if name in by_name:
         return by_name[name]
     close = get_close_matches(name, by_name, n=3, cutoff=0.4)
@@ -137,28 +137,28 @@ def set_named(name: str) -> SetEntry:
     raise InputError(f"no set of the benchmark has the name {name[:80]!r}: {remedy}")
 
 
-def query_of(entry: SetEntry) -> Query:
-    """What is asked to make the list of a set; refuses a workpiece's file that is not the manifest's."""
-    content = data_bytes(f"parts/{entry.part}.json")
-    if sha256(content).hexdigest() != manifest()["workpieces"][entry.part]["sha256"]:
+def make_set_query(entry: SetEntry) -> Query:
+    """Return what is asked to make the list of a set; refuse a workpiece's file that is not the manifest's."""
+    content = read_benchmark_file(f"parts/{entry.part}.json")
+    if sha256(content).hexdigest() != load_manifest()["workpieces"][entry.part]["sha256"]:
         raise InputError(f"the benchmark's workpiece {entry.part} has been changed: install workhold again.")
     part, given = json.loads(content), dict(entry.toolkit)
-    toolkit = toolkit_of(given.pop("kind"), given)
+    toolkit = make_toolkit(given.pop("kind"), given)
     return Query(Workpiece.from_loops(part["name"], part["loops"]), toolkit, listing=entry.listing)
 
 
 def set_text(name: str, result: Result) -> SetText:
     """Return the head and the lines of a set's file, from the complete result of the set's query."""
     fixtures = [
-        reduced(json.loads(line))
-        for lines in fixture_lines(result.table, result.toolkit, result.workpiece)
+        reduce_fixture(json.loads(line))
+        for lines in write_fixture_lines(result.table, result.toolkit, result.workpiece)
         for line in lines
     ]
     fixtures.sort(key=place_in_order)
-    return head_of(name, result), [json.dumps(one) for one in fixtures]
+    return make_set_head(name, result), [json.dumps(one) for one in fixtures]
 
 
-def reduced(fixture: Mapping[str, Any]) -> dict[str, Any]:
+def reduce_fixture(fixture: Mapping[str, Any]) -> dict[str, Any]:
     """Return a fixture of a result file with what a set says of it."""
     quality = {key: fixture["quality"][key] for key in FIGURE_KEYS if key in fixture["quality"]}
     return {key: fixture[key] for key in KEPT if key in fixture} | {"quality": quality}
@@ -176,7 +176,7 @@ def place_in_order(fixture: Mapping[str, Any]) -> tuple[Any, ...]:
     )
 
 
-def head_of(name: str, result: Result) -> dict[str, Any]:
+def make_set_head(name: str, result: Result) -> dict[str, Any]:
     said = result_head(result)
     key = next(key for key in TOOLKIT_KEYS if key in said)
     workpiece = {key: said["workpiece"][key] for key in ("name", "units", "loops")}
@@ -196,31 +196,31 @@ def head_of(name: str, result: Result) -> dict[str, Any]:
     }
 
 
-def file_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
+def write_set_text(head: Mapping[str, Any], lines: Iterable[str]) -> str:
     entries = "".join(f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in head.items())
     return "{" + entries + '"fixtures": [\n' + ",\n".join(lines) + "\n]}\n"
 
 
-def sums_of(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
+def compute_checksums(head: Mapping[str, Any], lines: Sequence[str]) -> dict[str, str]:
     """Return the checksums (SHA-256) of a set, by what they are of.
 
     ``file`` is of the whole text, ``fixtures`` of the lines joined by line ends, and ``holes`` of what is
     whole numbers in them. The last is the same on machines whose arithmetic rounds otherwise.
     """
     return {
-        "file": digest(file_text(head, lines)),
-        "fixtures": digest("\n".join(lines)),
-        "holes": digest("\n".join(map(holes_line, lines))),
+        "file": compute_sha256(write_set_text(head, lines)),
+        "fixtures": compute_sha256("\n".join(lines)),
+        "holes": compute_sha256("\n".join(map(write_holes_line, lines))),
     }
 
 
-def holes_line(line: str) -> str:
+def write_holes_line(line: str) -> str:
     """Return the whole numbers of a fixture: of every peg column, row and face."""
     fixture = json.loads(line)
     pegs = [[peg.get("column"), peg.get("row"), peg["segment"]] for peg in fixture["pegs"]]
     return json.dumps([fixture["type"], fixture.get("directions", fixture.get("direction")), pegs])
 
 
-def digest(text: str) -> str:
+def compute_sha256(text: str) -> str:
     """Return the SHA-256 of a text."""
     return sha256(text.encode("utf-8")).hexdigest()

@@ -13,19 +13,27 @@ from attrs import frozen
 from workhold.benchmark.catalogue import (
     COMMON,
     SetEntry,
-    data_bytes,
-    file_text,
-    query_of,
+    compute_checksums,
+    make_set_query,
+    read_benchmark_file,
     set_named,
     set_text,
-    sums_of,
+    write_set_text,
 )
-from workhold.benchmark.matching import Comparison, Entry, Places, compared, entered_fixture
+from workhold.benchmark.matching import Comparison, Entry, Places, compare_places, read_entered_fixture
 from workhold.errors import InputError
-from workhold.files.atomic import binary_file, write_bytes
+from workhold.files.atomic import write_binary_file, write_bytes
 from workhold.search.design import answer
 
-__all__ = ["LARGE", "MadeSet", "compared_entry", "load_arrow", "made_list", "made_sets", "write_common"]
+__all__ = [
+    "LARGE",
+    "MadeSet",
+    "compare_entry",
+    "load_arrow",
+    "make_list",
+    "make_and_write_sets",
+    "write_common",
+]
 
 # Fixtures from which on a set is written as Parquet where that is asked for.
 LARGE = 5000
@@ -59,15 +67,15 @@ class MadeSet:
         return "holes" not in self.differs
 
 
-def made_list(
+def make_list(
     entry: SetEntry, threads: int | None = None, cancel: Event | None = None
 ) -> tuple[dict[str, Any], list[str]] | None:
     """Return the head and the lines of a set, from a search; None where that was cancelled."""
-    result = answer(query_of(entry), threads=threads, cancel=cancel)
+    result = answer(make_set_query(entry), threads=threads, cancel=cancel)
     return set_text(entry.name, result) if result.complete else None
 
 
-def made_sets(
+def make_and_write_sets(
     chosen: Sequence[SetEntry],
     folder: Path,
     *,
@@ -76,7 +84,7 @@ def made_sets(
     progress: Callable[[float, int], None] | None = None,
     cancel: Event | None = None,
 ) -> Iterator[MadeSet]:
-    """Make sets one after the other and writes each into a folder.
+    """Make sets one after the other and write each into a folder.
 
     Parameters
     ----------
@@ -86,17 +94,17 @@ def made_sets(
     """
     total, fixtures, done = sum(one.size + 200 for one in chosen), 0, 0
     for entry in chosen:
-        made = made_list(entry, threads, cancel)
+        made = make_list(entry, threads, cancel)
         if made is None:
             return
         head, lines = made
-        sums = sums_of(head, lines)
+        sums = compute_checksums(head, lines)
         large = parquet and len(lines) >= LARGE
         path = folder / f"{entry.name}.{'parquet' if large else 'json'}"
         if large:
             write_parquet(path, head, lines)
         else:
-            write_bytes(path, file_text(head, lines).encode("utf-8"))
+            write_bytes(path, write_set_text(head, lines).encode("utf-8"))
         fixtures, done = fixtures + len(lines), done + entry.size + 200
         if progress is not None:
             progress(done / total, fixtures)
@@ -108,7 +116,7 @@ def write_common(chosen: Sequence[SetEntry], folder: Path) -> None:
     """Write manifest, checker, schemas and the workpieces of some sets into a folder."""
     (folder / "parts").mkdir(parents=True, exist_ok=True)
     for name in (*COMMON, *(f"parts/{part}.json" for part in {one.part for one in chosen})):
-        write_bytes(folder / name, data_bytes(name))
+        write_bytes(folder / name, read_benchmark_file(name))
 
 
 def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> None:
@@ -117,7 +125,7 @@ def write_parquet(path: Path, head: Mapping[str, Any], lines: Sequence[str]) -> 
     rows = [json.loads(line) for line in lines]
     table = arrow.Table.from_pylist(rows)
     table = table.replace_schema_metadata({"workhold-benchmark": json.dumps(head)})
-    with binary_file(path) as stream:
+    with write_binary_file(path) as stream:
         tables.write_table(table, stream, compression="zstd")
 
 
@@ -137,7 +145,7 @@ def load_arrow() -> tuple[Any, Any]:
     return pyarrow, pyarrow.parquet
 
 
-def compared_entry(
+def compare_entry(
     entry: Entry,
     tolerance: float,
     symmetric: bool,
@@ -152,18 +160,18 @@ def compared_entry(
         Where the list made here is not the one of the manifest.
     """
     known = set_named(entry.set_name)
-    query = query_of(known)
-    made = made_list(known, threads, cancel)
+    query = make_set_query(known)
+    made = make_list(known, threads, cancel)
     if made is None:
         return None
     head, lines = made
-    if sums_of(head, lines)["holes"] != known.sums["holes"]:
+    if compute_checksums(head, lines)["holes"] != known.sums["holes"]:
         raise InputError(
             f"the list of {known.name} made here differs from the one in the manifest: install "
             "workhold again."
         )
-    complete = [entered_fixture(json.loads(line)) for line in lines]
-    return compared(
+    complete = [read_entered_fixture(json.loads(line)) for line in lines]
+    return compare_places(
         Places(query.workpiece, complete),
         Places(query.workpiece, entry.fixtures),
         tolerance,

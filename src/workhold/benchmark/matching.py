@@ -30,8 +30,8 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
-from workhold.files.tables import SAVED, CsvRow, table_of
-from workhold.files.text import json_value, read_text
+from workhold.files.tables import SAVED, CsvRow, read_table
+from workhold.files.text import parse_json, read_text
 from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself, rotate_vectors
 from workhold.limits import read_number, refuse_long
 from workhold.model.workpiece import Workpiece
@@ -42,8 +42,8 @@ __all__ = [
     "EnteredPeg",
     "Entry",
     "Places",
-    "compared",
-    "entered_fixture",
+    "compare_places",
+    "read_entered_fixture",
     "read_entry",
 ]
 
@@ -107,16 +107,16 @@ def read_entry(path: Path, set_name: str | None = None) -> Entry:
     try:
         text = read_text(path, LIMITS["list"], SAVED if path.suffix.lower() == ".csv" else "save it as UTF-8")
         if path.suffix.lower() == ".csv":
-            return Entry(set_name or path.stem, rows_of(text))
-        return entry_of(text, set_name or path.stem)
+            return Entry(set_name or path.stem, read_csv_rows(text))
+        return parse_entry(text, set_name or path.stem)
     except InputError as error:
         raise InputError(f"{path.name}: {error}") from error
 
 
-def entry_of(text: str, usual: str) -> Entry:
+def parse_entry(text: str, usual: str) -> Entry:
     """Return the list of a text in JSON; ``usual`` is the set it is for where it does not say."""
     try:
-        content = json_value(text)
+        content = parse_json(text)
     except InputError as error:
         raise InputError(f"this JSON does not have the form in docs/benchmark.md: {error}") from error
     if not isinstance(content, dict) or not isinstance(content.get("fixtures"), list):
@@ -124,34 +124,34 @@ def entry_of(text: str, usual: str) -> Entry:
     name = content.get("set", usual)
     if not isinstance(name, str):
         raise InputError("the set is no name: give it as a text.")
-    return Entry(name, tuple(numbered(n, one) for n, one in enumerate(content["fixtures"], 1)))
+    return Entry(name, tuple(read_numbered_fixture(n, one) for n, one in enumerate(content["fixtures"], 1)))
 
 
-def numbered(number: int, fixture: Any) -> Entered:
+def read_numbered_fixture(number: int, fixture: Any) -> Entered:
     """Return a fixture of a list, whose number stands in the complaint."""
     try:
-        return entered_fixture(fixture)
+        return read_entered_fixture(fixture)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         words = f"{error} is missing" if isinstance(error, KeyError) else str(error)
         raise InputError(f"fixture {number}: {words}; give pegs with role, x and y, and the pose.") from error
 
 
-def entered_fixture(fixture: Mapping[str, Any]) -> Entered:
+def read_entered_fixture(fixture: Mapping[str, Any]) -> Entered:
     """Return a fixture of an object of JSON.
 
     Raises KeyError, TypeError or ValueError where it has not the form.
     """
     pose = fixture["pose"]
     pegs = tuple(
-        EnteredPeg(role_of(peg, fixture.get("direction")), finite(peg["x"]), finite(peg["y"]))
+        EnteredPeg(find_peg_role(peg, fixture.get("direction")), read_finite(peg["x"]), read_finite(peg["y"]))
         for peg in fixture["pegs"]
     )
     if not pegs:
         raise ValueError("it has no pegs")
-    return Entered(pegs, finite(pose["theta_deg"]), finite(pose["x"]), finite(pose["y"]))
+    return Entered(pegs, read_finite(pose["theta_deg"]), read_finite(pose["x"]), read_finite(pose["y"]))
 
 
-def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
+def find_peg_role(peg: Mapping[str, Any], direction: str | None) -> str:
     """Return the role of a peg; of a clamp with the direction, which the peg says or the whole fixture."""
     role = peg["jaw"] if "jaw" in peg else peg["role"]
     role = f"clamp {peg.get('direction', direction)}" if role == "clamp" else role
@@ -160,7 +160,7 @@ def role_of(peg: Mapping[str, Any], direction: str | None) -> str:
     return str(role)
 
 
-def finite(value: Any) -> float:
+def read_finite(value: Any) -> float:
     number = nan if isinstance(value, bool) else read_number(value)
     if not isfinite(number):
         raise ValueError(f"{str(value)[:40]!r} is no number")
@@ -168,8 +168,8 @@ def finite(value: Any) -> float:
     return number
 
 
-def rows_of(text: str) -> tuple[Entered, ...]:
-    table = table_of(text, Budget(LIMITS["list"], len(text))) if text.strip() else None
+def read_csv_rows(text: str) -> tuple[Entered, ...]:
+    table = read_table(text, Budget(LIMITS["list"], len(text))) if text.strip() else None
     names = {*table.names} if table is not None else set[str]()
     pegs = sorted(
         (name for name in names if re.fullmatch(r"peg[1-9]\d?", name)), key=lambda name: int(name[3:])
@@ -179,11 +179,13 @@ def rows_of(text: str) -> tuple[Entered, ...]:
     for name in (f"{peg}_{axis}" for peg in pegs for axis in "xy"):
         if name not in names:
             raise InputError(f"the column {name} is missing: add a column of this name for each peg.")
-    return tuple(numbered(row.row, as_object(row, pegs)) for row in table.rows())
+    return tuple(
+        read_numbered_fixture(row.row, convert_row_to_object(row, pegs)) for row in table.iterate_rows()
+    )
 
 
-def as_object(row: CsvRow, pegs: Sequence[str]) -> dict[str, Any]:
-    """A row of CSV as an object of JSON; pegs without any cell are none, for not all toolkits have as many."""
+def convert_row_to_object(row: CsvRow, pegs: Sequence[str]) -> dict[str, Any]:
+    """Return a row of CSV as an object of JSON; pegs without any cell are none, for not all toolkits have as many."""
     given = [peg for peg in pegs if not row.cells.keys().isdisjoint((peg, f"{peg}_x", f"{peg}_y"))]
     return {
         "pegs": [
@@ -214,7 +216,7 @@ class Places:
         scale = float(np.hypot(*np.ptp(points, axis=0)) / 2)
         return [place_of(one, scale) for one in self.entered]
 
-    def images(self, place: Array) -> list[Array]:
+    def list_images(self, place: Array) -> list[Array]:
         """Return a place under all rotations of the part onto itself, the place itself first."""
         every = self.part.numbered
         faces = [face.segment for face in every.faces]
@@ -264,19 +266,19 @@ class Comparison:
         return len(self.found) / self.listed if self.listed else 1.0
 
 
-def compared(complete: Places, theirs: Places, tolerance: float, symmetric: bool) -> Comparison:
+def compare_places(complete: Places, theirs: Places, tolerance: float, symmetric: bool) -> Comparison:
     """Compare another program's list with the complete one.
 
     The tolerance is how far in mm pegs and directions may be off, these at half the part's extent.
     ``symmetric`` says whether a fixture stands for all that a rotation of the part carries it into.
     """
-    index = Index.of(complete.places, tolerance)
+    index = Index.from_places(complete.places, tolerance)
     hits, met = set[int](), set[int | None]()
     extra, repeated = list[int](), list[int]()
     for number, place in enumerate(theirs.places):
-        own = index.nearest(place)
-        images = complete.images(place)[1:] if symmetric else []
-        known = {one for one in (own, *map(index.nearest, images)) if one is not None}
+        own = index.find_nearest(place)
+        images = complete.list_images(place)[1:] if symmetric else []
+        known = {one for one in (own, *map(index.find_nearest, images)) if one is not None}
         if not known:
             extra.append(number)
         elif own in met:
@@ -311,11 +313,11 @@ class Index:
     tolerance: float
 
     @classmethod
-    def of(cls, places: Sequence[Array], tolerance: float) -> Index:
+    def from_places(cls, places: Sequence[Array], tolerance: float) -> Index:
         sums = np.array([place[:, :2].sum(axis=0) for place in places]).reshape(-1, 2)
         return cls(places, sums, np.argsort(sums[:, 0], kind="stable"), tolerance)
 
-    def nearest(self, place: Array) -> int | None:
+    def find_nearest(self, place: Array) -> int | None:
         """Return the number of the place nearest to one, if that is within the tolerance."""
         x, y = place[:, :2].sum(axis=0)
         room = self.tolerance * len(place)

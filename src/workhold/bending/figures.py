@@ -78,7 +78,8 @@ class BentPlace:
             because = f", in line {self.line} with T{self.tool}"
         elif self.load is not None:
             because = f", under load {self.load}"
-        return f"{unit.small_text(self.value)} (give or take {unit.small_text(self.error)}) at ({place}){because}"
+        value, error = unit.format_small_length(self.value), unit.format_small_length(self.error)
+        return f"{value} (give or take {error}) at ({place}){because}"
 
     def as_data(self) -> dict[str, Any]:
         """Plain data: lengths in mm."""
@@ -134,9 +135,9 @@ class Bending:
         ----------
         mover : what presses, such as "jaw".
         """
-        force = f"At a {mover} force of {unit.force_words(self.jaw_force)}"
+        force = f"At a {mover} force of {unit.format_force(self.jaw_force)}"
         if self.is_stated:
-            force = f"For each {unit.force_words(self.jaw_force)} of {mover} force"
+            force = f"For each {unit.format_force(self.jaw_force)} of {mover} force"
         where = "the part" if self.faces is None else f"what is cut of the part ({self.faces})"
         said = [f"{force} clamping bends {where} by {self.clamp_distortion.words(unit)}; that springs back."]
         if self.give is not None:
@@ -147,16 +148,16 @@ class Bending:
         """What to beware of, a sentence each, above a limit in mm; nothing without one."""
         if limit is None:
             return []
-        more = f"more than {unit.small_text(limit)}"
+        more = f"more than {unit.format_small_length(limit)}"
         found = []
         if self.clamp_distortion.value > limit:
             found.append(
-                f"Clamping bends the part by {unit.small_text(self.clamp_distortion.value)}, {more}: clamp it "
+                f"Clamping bends the part by {unit.format_small_length(self.clamp_distortion.value)}, {more}: clamp it "
                 "less hard or where it is thicker, or leave some stock and clamp it anew for the last cut."
             )
         if self.give is not None and self.give.value > limit:
             found.append(
-                f"The part gives by {unit.small_text(self.give.value)} at the cutter, {more}: support it "
+                f"The part gives by {unit.format_small_length(self.give.value)} at the cutter, {more}: support it "
                 "nearer to "
                 "the cut, or cut less at once there."
             )

@@ -143,7 +143,7 @@ def hold_of_fixture(
     matrices = touched.of_fixture(fixture, toolkit)
     contacts, normals, *_ = find_contacts_on_part(fixture, workpiece, toolkit, touched, matrices)
     points = contacts + touched.center
-    carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
+    carriers = toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)
     low, high = find_pressed_heights(fixture, workpiece, toolkit, matrices.points, height, pressed_up_to)
     strips = [
         make_strip((point[0], point[1]), (normal[0], normal[1]), *heights)
@@ -198,7 +198,7 @@ def find_flexibilities(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, points: Array, pressed_up_to: float | None
 ) -> Array:
     """How far each contact gives way (P,) in mm for each N; nothing where nobody knows, and of tips and walls."""
-    carriers = np.array([toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)])
+    carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
     runs = PinRuns.of(faces, carriers, workpiece, toolkit, points, pressed_up_to)
     found: Array = np.nan_to_num(compute_deflections(1.0, runs.middle[0], runs.diameter[0]))

@@ -7,7 +7,7 @@ from math import isfinite
 from attrs import field, frozen
 
 from workhold.errors import InputError
-from workhold.limits import real
+from workhold.limits import convert_real
 
 __all__ = ["MATERIALS", "ElasticMaterial", "find_material"]
 
@@ -26,9 +26,9 @@ class ElasticMaterial:
     """
 
     name: str
-    elastic_modulus: float = field(converter=real)
-    poisson: float = field(converter=real)
-    density: float = field(converter=real)
+    elastic_modulus: float = field(converter=convert_real)
+    poisson: float = field(converter=convert_real)
+    density: float = field(converter=convert_real)
     source: str = "given"
 
     def __attrs_post_init__(self) -> None:

@@ -9,13 +9,13 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.program import CuttingQuestion, ProgramQuestion, StockQuestion
 from workhold.asking.reading import ReadingQuestion
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
-from workhold.files.declared_forms import given_in, with_fields
+from workhold.files.declared_forms import add_declared_fields, collect_given_values
 from workhold.files.input_forms import LoadTable
 
 __all__ = [
@@ -26,13 +26,13 @@ __all__ = [
     "SheetArguments",
     "ShowArguments",
     "ToolArguments",
-    "checked_arguments",
+    "check_arguments",
 ]
 
 # What a search asks but heights, which stand with the reading of the part and with the program.
-OF_SEARCH = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING, SEATING, SEARCH))
-OF_SHEET = declarations_of(SheetQuestion)
-OF_READING = declarations_of(ReadingQuestion)
+OF_SEARCH = list_declarations(SearchQuestion, (RULING_OUT, LOADS, RANKING, SEATING, SEARCH))
+OF_SHEET = list_declarations(SheetQuestion)
+OF_READING = list_declarations(ReadingQuestion)
 Arguments = TypeVar("Arguments", bound="ToolArguments")
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 Positive = Annotated[float, Field(gt=0)]
@@ -48,7 +48,7 @@ class ToolArguments(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 
-@with_fields(OF_READING)
+@add_declared_fields(OF_READING)
 class LoadArguments(ToolArguments):
     """A part and how it is read."""
 
@@ -63,9 +63,9 @@ class LoadArguments(ToolArguments):
     )
     picture: bool = Field(default=False, description="show a picture, too")
 
-    def reading(self) -> dict[str, Any]:
+    def to_load_arguments(self) -> dict[str, Any]:
         """Return the arguments of :func:`workhold.load` but the part."""
-        return given_in(self, OF_READING)
+        return collect_given_values(self, OF_READING)
 
 
 class Circle(ToolArguments):
@@ -80,17 +80,17 @@ class Polygon(ToolArguments):
     polygon: list[Pair] = Field(min_length=3)
 
 
-@with_fields(declarations_of(CuttingQuestion))
+@add_declared_fields(list_declarations(CuttingQuestion))
 class CuttingArguments(ToolArguments):
     """How the tools cut of which the table does not say it; one of force, power and material."""
 
 
-@with_fields(declarations_of(StockQuestion))
+@add_declared_fields(list_declarations(StockQuestion))
 class StockArguments(ToolArguments):
     """What the part is cut from, on which alone tools press."""
 
 
-@with_fields(declarations_of(ProgramQuestion))
+@add_declared_fields(list_declarations(ProgramQuestion))
 class ProgramArguments(ToolArguments):
     """The program of the mill, whose tools the fixtures are to keep clear of."""
 
@@ -116,7 +116,7 @@ class ProgramArguments(ToolArguments):
         default=None, description="raw stock of the part; 5 mm around the outline and on top if not given"
     )
 
-    def reading(self, height: float | None) -> dict[str, Any]:
+    def to_read_arguments(self, height: float | None) -> dict[str, Any]:
         """Return the arguments of :meth:`workhold.Program.read`.
 
         Parameters
@@ -128,7 +128,7 @@ class ProgramArguments(ToolArguments):
         return given | {"thickness": self.thickness or height}
 
 
-@with_fields(OF_SEARCH)
+@add_declared_fields(OF_SEARCH)
 class DesignArguments(LoadArguments):
     """A search for every way to hold a part."""
 
@@ -185,7 +185,7 @@ class ShowArguments(ToolArguments):
     picture: bool = Field(default=True, description="show a picture, too")
 
 
-@with_fields(OF_SHEET)
+@add_declared_fields(OF_SHEET)
 class SheetArguments(ToolArguments):
     """A setup sheet, or a set-up for a CAM system."""
 
@@ -200,7 +200,7 @@ class SheetArguments(ToolArguments):
     )
 
 
-def checked_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
+def check_arguments(form: type[Arguments], given: dict[str, Any] | None) -> Arguments:
     try:
         return form.model_validate(given or {})
     except ValidationError as error:

@@ -23,21 +23,21 @@ from workhold.cli.agent_arguments import (
     ShowArguments,
     ToolArguments,
 )
-from workhold.cli.options import result_with
+from workhold.cli.options import read_result_with_rank
 from workhold.cli.outputs import refuse_output
-from workhold.cli.search_options import with_fit_of
-from workhold.cli.show_command import passing_words
+from workhold.cli.search_options import add_dowel_fit
+from workhold.cli.show_command import describe_program_clearances
 from workhold.errors import InputError
-from workhold.files.declared_forms import given_in
+from workhold.files.declared_forms import collect_given_values
 from workhold.files.input_forms import LoadTable
 from workhold.files.loads_file import load_from_words
 from workhold.files.part.load import Loaded, read_workpiece, refuse_unsure_numbers
 from workhold.files.result.save import save
 from workhold.files.toolkit_file import load_toolkit
-from workhold.fixels.kinds import ALIASES, KINDS, toolkit_of
+from workhold.fixels.kinds import ALIASES, KINDS, make_toolkit
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
-from workhold.listing.identity import entries
+from workhold.listing.identity import make_entries
 from workhold.model.program import Program
 from workhold.model.quality import read_asked_ranking
 from workhold.model.query import Query
@@ -51,7 +51,13 @@ from workhold.model.requirements import (
 )
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.data import explanation_data, fixture_data, load_case_data, part_data, result_data
+from workhold.presenting.data import (
+    describe_explanation,
+    describe_fixture,
+    describe_part,
+    describe_result,
+    load_case_data,
+)
 from workhold.units import MILLIMETRE
 
 __all__ = ["TOOLS"]
@@ -82,20 +88,20 @@ class AgentTool:
 
 
 def load(asked: LoadArguments, folder: Path, cancel: Event) -> Answer:
-    """Reads a part and lists its faces."""
-    loaded = read_workpiece(asked.part, **asked.reading())
+    """Read a part and list its faces."""
+    loaded = read_workpiece(asked.part, **asked.to_load_arguments())
     return Answer(
-        part_data(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
+        describe_part(loaded.workpiece, loaded.remarks), loaded.workpiece.draw() if asked.picture else None
     )
 
 
-def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
-    """Finds the fixtures, writes all to a file and returns the best."""
+def run_design_tool(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
+    """Find the fixtures, write them all to a file and return the best."""
     out = asked.out or str(folder / f"result-{len(list(folder.iterdir())) + 1}.json")
     refuse_output(out, (asked.part, asked.toolkit), asked.force, "force")
-    loaded, result = answered(asked, cancel)
+    loaded, result = search_until_deadline(asked, cancel)
     save(result, out, overwrite=True)
-    found = result_data(result, entries(result), asked.count)
+    found = describe_result(result, make_entries(result), asked.count)
     data = {
         **found,
         "result_file": out,
@@ -105,8 +111,8 @@ def design(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
 
 
 def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
-    """Explains why there is no fixture and what would help; where there are some, counts them."""
-    _, result = answered(asked, cancel)
+    """Explain why there is no fixture and what would help; where there are some, counts them."""
+    _, result = search_until_deadline(asked, cancel)
     found = sum(result.found.values())
     if found or not result.complete:
         why = (
@@ -121,23 +127,23 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> Answer:
     words = explanation.nearest.words if explanation.nearest else " ".join(map(str, result.notes))
     words = f"{explanation.asked_words} {words}".lstrip()
     return Answer(
-        {"found": 0, "complete": True, "sentence": words, **explanation_data(explanation, result.toolkit)}
+        {"found": 0, "complete": True, "sentence": words, **describe_explanation(explanation, result.toolkit)}
     )
 
 
-def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
-    """Returns the part and the answer of the search, which ends when its time is over."""
+def search_until_deadline(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
+    """Return the part and the answer of the search, which ends when its time is over."""
     from workhold.search.design import answer
 
-    toolkit, tolerance = held_in(asked.toolkit, asked.fields)
-    loaded = read_workpiece(asked.part, **asked.reading(), peg_diameter=toolkit.peg_diameter)
+    toolkit, tolerance = make_asked_toolkit(asked.toolkit, asked.fields)
+    loaded = read_workpiece(asked.part, **asked.to_load_arguments(), peg_diameter=toolkit.peg_diameter)
     refuse_unsure_numbers(loaded, asked.avoid)
-    loads = loads_of(asked.loads)
+    loads = make_loads(asked.loads)
     zones = [
         circle_zone(*one.circle) if hasattr(one, "circle") else polygon_zone(one.polygon)
         for one in asked.keep_out
     ]
-    passed = passed_by(asked.program, loaded.workpiece)
+    passed = read_program_to_pass(asked.program, loaded.workpiece)
     program = passed.get("program")
     has_forces = program is not None and program.forces is not None
     query = Query(
@@ -146,9 +152,9 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         asked.types,
         Restrictions(asked.avoid, zones, asked.angles, asked.touch),
         read_asked_ranking(None, asked.prefer, bool(loads) or has_forces, program is not None),
-        with_fit_of(None, tolerance),
+        add_dowel_fit(None, tolerance),
         loads,
-        **given_in(asked, OF_SEARCH),
+        **collect_given_values(asked, OF_SEARCH),
         **passed,
     )
     clock = Timer(asked.seconds, cancel.set)
@@ -159,7 +165,7 @@ def answered(asked: DesignArguments, cancel: Event) -> tuple[Loaded, Result]:
         clock.cancel()
 
 
-def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str, Any]:
+def read_program_to_pass(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str, Any]:
     if asked is None:
         return {}
     solid = workpiece.solid
@@ -171,42 +177,42 @@ def passed_by(asked: ProgramArguments | None, workpiece: Workpiece) -> dict[str,
             "pass over the pegs: give the part's thickness, and peg_height if the pegs are not as "
             "high."
         )
-    return {"program": Program.read(asked.path, **asked.reading(height)), "peg_height": high}
+    return {"program": Program.read(asked.path, **asked.to_read_arguments(height)), "peg_height": high}
 
 
-def held_in(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
-    """Makes a toolkit of a preset, a file or a kind, with some fields changed; returns its tolerance too."""
+def make_asked_toolkit(name: str, fields: Mapping[str, Any]) -> tuple[Toolkit, Tolerance | None]:
+    """Make a toolkit of a preset, a file or a kind, with some fields changed; return its tolerance too."""
     try:
         if name in KINDS or name in ALIASES:
-            return toolkit_of(name, fields), None
+            return make_toolkit(name, fields), None
         loaded = load_toolkit(name)
-        return toolkit_of(loaded.kind, {**loaded.fields, **fields}), loaded.tolerance
+        return make_toolkit(loaded.kind, {**loaded.fields, **fields}), loaded.tolerance
     except (TypeError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         raise InputError(f"the fields of the toolkit are not as they should be: {error}.") from error
 
 
-def loads_of(tables: list[LoadTable]) -> tuple[Load, ...]:
+def make_loads(tables: list[LoadTable]) -> tuple[Load, ...]:
     given = (table.model_dump(exclude_unset=True) for table in tables)
     return tuple(load_from_words(words, f"load {number}", 1.0) for number, words in enumerate(given, 1))
 
 
 def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
-    """Shows how to set up a fixture, and what loads do to it."""
+    """Show how to set up a fixture, and what loads do to it."""
     from workhold.statics.loads import load_cases
 
-    result = result_with(asked.result_file, asked.rank)
-    fixture, loads = result[asked.rank - 1], loads_of(asked.loads) or result.query.loads
+    result = read_result_with_rank(asked.result_file, asked.rank)
+    fixture, loads = result[asked.rank - 1], make_loads(asked.loads) or result.query.loads
     force = result.query.jaw_force if asked.jaw_force is None else asked.jaw_force
     cases = load_cases(fixture, result.workpiece, result.toolkit, loads, force)
     rest = {
         "listed": len(result),
         "complete": bool(result.complete),
         "loads": [load_case_data(one) for one in cases],
-        "program": passing_words(result, asked.rank, MILLIMETRE, force),
+        "program": describe_program_clearances(result, asked.rank, MILLIMETRE, force),
     }
-    shown = fixture_data(fixture, result.toolkit, asked.rank)
+    shown = describe_fixture(fixture, result.toolkit, asked.rank)
     if asked.seating and not result.toolkit.closes_at_once:
         from workhold.seating.clamping import by_hand
 
@@ -218,10 +224,10 @@ def show(asked: ShowArguments, folder: Path, cancel: Event) -> Answer:
     return Answer({"fixture": shown, **rest}, fixture.draw() if asked.picture else None)
 
 
-def sheet(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
-    """Writes the setup sheet."""
+def run_sheet_tool(asked: SheetArguments, folder: Path, cancel: Event) -> Answer:
+    """Write the setup sheet."""
     refuse_output(asked.path, (asked.result_file,), asked.force, "force")
-    result = result_with(asked.result_file, asked.rank)
+    result = read_result_with_rank(asked.result_file, asked.rank)
     wishes = asked.model_dump(exclude={"result_file", "rank", "path", "force"})
     fixture, force = result[asked.rank - 1], asked.force
     fixture.save_sheet(asked.path, result_file=asked.result_file, overwrite=force, **wishes)
@@ -236,7 +242,7 @@ TOOLS: Mapping[str, AgentTool] = {
         "Find every way to hold a part in a vise, on a plate with clamps or on a fence. The list "
         "is proven complete. Report the best fixtures, and write all to a result file.",
         DesignArguments,
-        design,
+        run_design_tool,
     ),
     "show": AgentTool(
         "Show how to set up one fixture of a result file: holes, opening, pose, quality, and what loads do "
@@ -248,7 +254,7 @@ TOOLS: Mapping[str, AgentTool] = {
         "Write the setup sheet of a fixture of a result file, or its set-up as DXF or STEP, or its list of "
         "pins.",
         SheetArguments,
-        sheet,
+        run_sheet_tool,
     ),
     "explain": AgentTool(
         "Explain why there is no way to hold a part: which rule removed the last candidates, and "

@@ -10,27 +10,27 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import flag, option, print_remark, spread
+from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output_folder
 from workhold.cli.program_options import SOLIDS, ProgramWords
-from workhold.cli.progress import batch_progress
+from workhold.cli.progress import show_batch_progress
 from workhold.cli.search_options import QueryWords, SeatingWords
-from workhold.cli.table import plural, print_tables
+from workhold.cli.table import format_count, print_tables
 from workhold.cli.toolkit_options import (
     SWEEP,
     ListWords,
     Named,
-    heights_of_all,
-    peg_diameter_of,
-    query_of,
-    toolkits_to_try,
-    words_of,
+    collect_carrier_heights,
+    find_peg_diameter,
+    list_toolkits_to_try,
+    make_query,
+    split_words,
 )
-from workhold.cli.values import length_unit, optional_count, positive_number
+from workhold.cli.values import read_optional_count, read_positive_number, read_unit
 from workhold.errors import InputError
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,7 +67,7 @@ PartsArgument = Annotated[
 ]
 
 
-TRIED = option(
+TRIED = make_option(
     SWEEP,
     "NAMES|FILES",
     "Vises, plates and fences by name or from TOML files, such as plate-20mm,own.toml; or a kind (vise, "
@@ -81,16 +81,16 @@ TRIED = option(
 class BatchOutputWords:
     """The options of what is kept of a batch, as typed."""
 
-    out: str = option(
+    out: str = make_option(
         OUTPUT,
         "DIR",
         "Folder for the tables, the report and the records; the same folder again goes on with the run.",
         default="",
     )
-    best: str = option(
+    best: str = make_option(
         OUTPUT, "K", "Number of fixtures to keep of each job; all are counted.", default=USUAL_BEST
     )
-    sheets: bool = flag(OUTPUT, "Write the setup sheet of each first choice as PDF.", "--sheets")
+    sheets: bool = make_flag(OUTPUT, "Write the setup sheet of each first choice as PDF.", "--sheets")
     force: bool = FORCE
     json_: bool = JSON
 
@@ -99,22 +99,22 @@ class BatchOutputWords:
 class WorkWords:
     """The options of where the work is done, as typed."""
 
-    workers: str | None = option(WORK, "N", "Worker processes; one for each processor if not given.")
-    seconds: str = option(
+    workers: str | None = make_option(WORK, "N", "Worker processes; one for each processor if not given.")
+    seconds: str = make_option(
         WORK,
         "S",
         "Longest time of one job; its row then says so, and the other jobs go on.",
         default=USUAL_SECONDS,
     )
-    cluster: str | None = option(
+    cluster: str | None = make_option(
         WORK,
         "ADDRESS",
         "Work on a Dask cluster instead; give the address of its scheduler, such as tcp://10.0.0.5:8786.",
     )
-    local_cluster: str | None = option(
+    local_cluster: str | None = make_option(
         WORK, "N", "Work on a Dask cluster of N processes on this machine instead."
     )
-    records: str | None = option(
+    records: str | None = make_option(
         WORK,
         "URL|DIR",
         "Folder for the records, if it is not in the folder of --out: a folder that all workers "
@@ -124,8 +124,8 @@ class WorkWords:
 
     def place(self) -> Workplace:
         """Return where the work is done; refuse two places, and a cluster without its library."""
-        count = optional_count("--workers", self.workers)
-        processes = optional_count("--local-cluster", self.local_cluster)
+        count = read_optional_count("--workers", self.workers)
+        processes = read_optional_count("--local-cluster", self.local_cluster)
         if sum(word is not None for word in (self.workers, self.cluster, self.local_cluster)) > 1:
             raise InputError(
                 "--workers, --cluster and --local-cluster each choose where the work is done: give only "
@@ -137,7 +137,7 @@ class WorkWords:
                 "a cluster needs Dask, which is not installed: install distributed>=2024.8 and "
                 "fsspec>=2024.6."
             )
-        longest = positive_number("--seconds", self.seconds)
+        longest = read_positive_number("--seconds", self.seconds)
         if on_cluster and self.seconds != USUAL_SECONDS:
             raise InputError(
                 "--seconds limits the workers of this machine, and a cluster has no such limit: leave it out."
@@ -164,13 +164,13 @@ class Workplace:
     processes: int | None
     records: str | None
 
-    def queue(self, progress: BatchProgress, store: Store) -> LocalWorkers | ClusterWorkers:
+    def make_queue(self, progress: BatchProgress, store: Store) -> LocalWorkers | ClusterWorkers:
         """Make the queue of jobs; the workers of a cluster write records to ``store`` themselves if it is
         no folder of the results."""
         if self.cluster is None and self.processes is None:
             from workhold.batch.workers import LocalWorkers
 
-            return LocalWorkers(self.count or thread_count(None), progress, seconds=self.seconds)
+            return LocalWorkers(self.count or choose_thread_count(None), progress, seconds=self.seconds)
         from workhold.batch.cluster import ClusterWorkers
 
         kept_there = None if self.records is None else store
@@ -217,11 +217,11 @@ class BatchAnswer:
     @property
     def sentence(self) -> str:
         before = f"; {self.done.kept:,} were known already" if self.done.kept else ""
-        parts, fresh = plural(len(self.done.parts), "part"), plural(self.done.fresh, "answer")
+        parts, fresh = format_count(len(self.done.parts), "part"), format_count(self.done.fresh, "answer")
         return f"{parts}, {fresh} found in {self.spent:.1f} s{before}."
 
 
-@spread
+@spread_option_groups
 def batch(
     parts: PartsArgument,
     *,
@@ -257,12 +257,12 @@ def parse(
     """Read what was typed; the parts are read later, each by who works on it."""
     if not written.out:
         raise InputError("the folder for the results is not given: name one with --out.")
-    kept, place, folder = optional_count("--best", written.best) or 1, work.place(), Path(written.out)
-    from workhold.batch.tables import table_names
+    kept, place, folder = read_optional_count("--best", written.best) or 1, work.place(), Path(written.out)
+    from workhold.batch.tables import list_table_names
 
-    names = (*table_names(), REPORT)
+    names = (*list_table_names(), REPORT)
     refuse_output_folder(folder, names, (*parts, words[0].loads, *words[2].files), written.force)
-    requests = requests_of(parts, toolkit, varied, words, reading, folder)
+    requests = list_requests(parts, toolkit, varied, words, reading, folder)
     return BatchTask(requests, kept, place, folder, names, written)
 
 
@@ -283,7 +283,7 @@ def ask(asked: BatchTask) -> BatchAnswer:
             compile_kernels(stop)
             if any(is_seated(held) for request in asked.requests for held in request.held_in):
                 compile_seating(stop)
-        with batch_progress() as progress, asked.place.queue(progress, store) as queue:
+        with show_batch_progress() as progress, asked.place.make_queue(progress, store) as queue:
             done = run_batch(asked.requests, asked.kept, BatchRun(store, queue, measured, progress, stop))
     spent = perf_counter() - start
     return BatchAnswer(done, store, measured, spent, progress.events, getattr(queue, "gone", ""))
@@ -322,7 +322,7 @@ def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
 
     done, folder = answer.done, asked.folder
     toolkits = len({job.held_in.name for job in done.jobs})
-    headline = f"{plural(len(done.parts), 'part')} in {plural(toolkits, 'toolkit')}"
+    headline = f"{format_count(len(done.parts), 'part')} in {format_count(toolkits, 'toolkit')}"
     sentences = [
         answer.sentence,
         f"workhold {__version__} has made this page; the tables beside it have every figure.",
@@ -343,7 +343,7 @@ def is_seated(held: HeldIn) -> bool:
     )
 
 
-def requests_of(
+def list_requests(
     parts: Sequence[str],
     toolkit: list[str] | None,
     varied: ListWords,
@@ -355,56 +355,60 @@ def requests_of(
     from workhold.cli.jobs import JOB_ENDINGS, read_jobs
 
     lists = varied.has_pitches or toolkit is not None
-    named = asked_toolkits(toolkit, varied, reading) if lists else None
-    asked_of(words, reading)
+    named = list_asked_toolkits(toolkit, varied, reading) if lists else None
+    make_query_arguments(words, reading)
     requests: list[Request] = []
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
     if plain:
         if named is None:
             raise InputError("no toolkit is given: name one or more with --toolkit (see workhold toolkits).")
-        requests += requests_in(named, plain, words, reading, folder)
+        requests += list_requests_in_toolkits(named, plain, words, reading, folder)
     for name in parts:
         if name in plain:
             continue
         for job in read_jobs(Path(name)):
             try:
-                own_reading = job.over(reading)
-                own_words = job.over(words[0]), job.over(words[1]), job.over(words[2])
+                own_reading = job.replace_options(reading)
+                own_words = (
+                    job.replace_options(words[0]),
+                    job.replace_options(words[1]),
+                    job.replace_options(words[2]),
+                )
                 own = named
                 if job.toolkits is not None:
-                    own = asked_toolkits(job.toolkits, ListWords(), own_reading)
+                    own = list_asked_toolkits(job.toolkits, ListWords(), own_reading)
                 if own is None:
                     raise InputError(
                         "no toolkit is given: name one or more under toolkit, or for all of them."
                     )
-                requests += requests_in(own, [job.part], own_words, own_reading, folder)
+                requests += list_requests_in_toolkits(own, [job.part], own_words, own_reading, folder)
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
     return requests
 
 
-def requests_in(
+def list_requests_in_toolkits(
     toolkits: Sequence[Named], parts: Sequence[str], words: AskedWords, reading: PartWords, folder: Path
 ) -> list[Request]:
     """List what is asked of some parts, each of which is read once and held in all of some toolkits."""
     from workhold.batch.run import ANY_PART, HeldIn, Request
-    from workhold.files.part_list import part_list
+    from workhold.files.part_list import list_parts
 
-    asked = asked_of(words, reading)
-    held_in = [HeldIn(one.name, query_of(ANY_PART, one, asked)) for one in toolkits]
+    asked = make_query_arguments(words, reading)
+    held_in = [HeldIn(one.name, make_query(ANY_PART, one, asked)) for one in toolkits]
     # With a program heights are among what is asked.
     known = (
-        words[2].heights(length_unit(reading.unit), reading.peg_height) if words[2].program is None else {}
+        words[2].read_heights(read_unit(reading.unit), reading.peg_height) if words[2].program is None else {}
     )
-    drawn_in = [HeldIn(one.name, query_of(ANY_PART, one, asked | known)) for one in toolkits]
-    listed, heights = part_list(parts, [folder]), heights_of_all(toolkits)
+    drawn_in = [HeldIn(one.name, make_query(ANY_PART, one, asked | known)) for one in toolkits]
+    listed, heights = list_parts(parts, [folder]), collect_carrier_heights(toolkits)
     of_carriers = {"heights": heights} if heights else {}
     by_pegs: dict[float | None, list[HeldIn]] = {}
     for one, named in zip(held_in, toolkits, strict=True):
-        by_pegs.setdefault(peg_diameter_of(named), []).append(one)
+        by_pegs.setdefault(find_peg_diameter(named), []).append(one)
     requests = []
     for part in listed:
-        options = words[2].reading(part.name, reading).options() | of_carriers
+        options = words[2].adapt_part_options(part.name, reading).to_read_arguments() | of_carriers
         if part.path.suffix.lower() not in SOLIDS:
             requests.append(Request(part, options, drawn_in))
             continue
@@ -416,15 +420,15 @@ def requests_in(
     return requests
 
 
-def asked_toolkits(
+def list_asked_toolkits(
     names: list[str] | None,
     varied: ListWords,
     reading: PartWords,
 ) -> list[Named]:
-    """List the toolkits of names, files and lists; of several names one may be a kind."""
+    """List the toolkits of names, files and list; of several names one may be a kind."""
     from workhold.fixels.kinds import ALIASES, KINDS
 
-    words = [word for text in names or () for word in words_of("--toolkit", text)]
+    words = [word for text in names or () for word in split_words("--toolkit", text)]
     kinds = [word for word in words if word.lower() in (*KINDS, *ALIASES)]
     if len(kinds) > 1:
         raise InputError(
@@ -436,11 +440,11 @@ def asked_toolkits(
             f"{kinds[0]} is a kind of toolkit: give --pitch and --peg-radius too, or name toolkits."
         )
     kind = kinds[0] if kinds else None
-    return toolkits_to_try(others or None, kind, varied, length_unit(reading.unit))
+    return list_toolkits_to_try(others or None, kind, varied, read_unit(reading.unit))
 
 
-def asked_of(words: AskedWords, reading: PartWords) -> dict[str, Any]:
+def make_query_arguments(words: AskedWords, reading: PartWords) -> dict[str, Any]:
     wishes, seated_by, machined = words
-    unit, has_program = length_unit(reading.unit), machined.program is not None
-    asked = wishes.asked(unit, has_program, machined.has_forces) | seated_by.asked(unit)
-    return asked | machined.asked(unit, reading.peg_height)
+    unit, has_program = read_unit(reading.unit), machined.program is not None
+    asked = wishes.read_arguments(unit, has_program, machined.has_forces) | seated_by.read_arguments(unit)
+    return asked | machined.read_query_arguments(unit, reading.peg_height)

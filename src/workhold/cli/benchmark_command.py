@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import flag, option, spread
+from workhold.cli.commands import make_flag, make_option, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
-from workhold.cli.progress import progress_bar
-from workhold.cli.table import Table, plural, print_tables
-from workhold.cli.values import choice, optional_count, positive_number
+from workhold.cli.progress import show_progress
+from workhold.cli.table import Table, format_count, print_tables
+from workhold.cli.values import read_choice, read_optional_count, read_positive_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,23 +37,23 @@ TOLERANCE = "0.001"
 class BenchmarkWords:
     """The options of all actions, as typed."""
 
-    out: str | None = option(None, "DIR", "For run: the folder into which the sets are written.")
-    parquet: bool = flag(None, "For run: write sets of 5,000 fixtures or more as Parquet.", "--parquet")
-    set_: str | None = option(
+    out: str | None = make_option(None, "DIR", "For run: the folder into which the sets are written.")
+    parquet: bool = make_flag(None, "For run: write sets of 5,000 fixtures or more as Parquet.", "--parquet")
+    set_: str | None = make_option(
         None, "NAME", "For check: the set to which the files belong, if they do not say it.", "--set"
     )
-    tolerance: str = option(
+    tolerance: str = make_option(
         None,
         "MM",
         "For check: how far a peg may be from its place in the complete list.",
         default=TOLERANCE,
     )
-    symmetric: bool = flag(
+    symmetric: bool = make_flag(
         None,
         "For check: count one fixture for all those that a rotation of the part carries into each other.",
         "--symmetric",
     )
-    threads: str | None = option(None, "N", "Threads to use; all processors if not given.")
+    threads: str | None = make_option(None, "N", "Threads to use; all processors if not given.")
     force: bool = FORCE
     json_: bool = JSON
 
@@ -75,7 +75,7 @@ class BenchmarkTask:
     tolerance: float
 
 
-@spread
+@spread_option_groups
 def benchmark(
     action: Annotated[str, typer.Argument(metavar="ACTION", help="list, run, check or checker.")],
     names: Annotated[
@@ -101,9 +101,9 @@ def benchmark(
     if asked.action == "checker":
         print_checker()
     elif asked.action == "list":
-        list_sets(chosen_sets(asked.names), words.json_)
+        list_sets(choose_sets(asked.names), words.json_)
     elif asked.action == "run":
-        chosen = chosen_sets(asked.names)
+        chosen = choose_sets(asked.names)
         report_made(asked, chosen, make_sets(asked, chosen))
     else:
         report_compared(asked, compare(asked))
@@ -111,25 +111,25 @@ def benchmark(
 
 def parse(action: str, names: Sequence[str], words: BenchmarkWords) -> BenchmarkTask:
     """Read what was typed."""
-    asked = choice("the action", action, ACTIONS)
-    threads = optional_count("--threads", words.threads)
-    tolerance = positive_number("--tolerance", words.tolerance)
+    asked = read_choice("the action", action, ACTIONS)
+    threads = read_optional_count("--threads", words.threads)
+    tolerance = read_positive_number("--tolerance", words.tolerance)
     if words.out is not None and asked != "run":
         raise InputError(f"--out belongs to run: leave it out, or say run instead of {asked}.")
     return BenchmarkTask(asked, names, words, threads, tolerance)
 
 
 def print_checker() -> None:
-    from workhold.benchmark.catalogue import data_bytes
+    from workhold.benchmark.catalogue import read_benchmark_file
 
-    sys.stdout.write(data_bytes("check.py").decode("utf-8"))
+    sys.stdout.write(read_benchmark_file("check.py").decode("utf-8"))
 
 
-def chosen_sets(words: Sequence[str]) -> list[SetEntry]:
-    """The sets that words name: by name, by workpiece, or by what a name contains; all of them without words."""
-    from workhold.benchmark.catalogue import set_named, sets
+def choose_sets(words: Sequence[str]) -> list[SetEntry]:
+    """Return the sets that words name: by name, by workpiece, or by what a name contains; all of them without words."""
+    from workhold.benchmark.catalogue import load_sets, set_named
 
-    every, chosen = sets(), set[str]()
+    every, chosen = load_sets(), set[str]()
     for word in words:
         called = [one.name for one in every if one.name == word]
         of_part = [one.name for one in every if one.part == word]
@@ -157,7 +157,7 @@ def list_sets(chosen: Sequence[SetEntry], as_json: bool) -> None:
     for one in chosen:
         table.add_row(one.name, f"{one.size:,}", one.reason)
     total = sum(one.size for one in chosen)
-    print_tables(table, f"{plural(len(chosen), 'set')}, {plural(total, 'fixture')}.")
+    print_tables(table, f"{format_count(len(chosen), 'set')}, {format_count(total, 'fixture')}.")
 
 
 def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]:
@@ -168,7 +168,7 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
     folder = Path(words.out)
     names = ["manifest.json", "check.py", *(f"{one.name}.json" for one in chosen)]
     refuse_output_folder(folder, names, (), words.force)
-    from workhold.benchmark.making import load_arrow, made_sets, write_common
+    from workhold.benchmark.making import load_arrow, make_and_write_sets, write_common
     from workhold.cli.warming import compile_kernels
 
     if words.parquet:
@@ -176,8 +176,8 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
     write_common(chosen, folder)
     with ask_to_stop("the finished sets are kept") as cancel:
         compile_kernels(cancel)
-        with progress_bar("Making sets", "fixtures") as progress:
-            made = made_sets(
+        with show_progress("Making sets", "fixtures") as progress:
+            made = make_and_write_sets(
                 chosen, folder, parquet=words.parquet, threads=asked.threads, progress=progress, cancel=cancel
             )
             return list(made)
@@ -205,7 +205,7 @@ def report_made(asked: BenchmarkTask, chosen: Sequence[SetEntry], made: Sequence
             sentences.append(f"The same fixtures, except that this machine rounds otherwise: {few}.")
         total = sum(one.size for one in made)
         same = "all equal to the manifest" if not other and not rounded else f"{len(other)} of them differ"
-        done = f"{plural(len(made), 'set')} with {plural(total, 'fixture')} written to {asked.words.out}"
+        done = f"{format_count(len(made), 'set')} with {format_count(total, 'fixture')} written to {asked.words.out}"
         print_tables(*sentences, f"{done}, {same}.")
     if len(made) < len(chosen):
         raise typer.Exit(INTERRUPTED)
@@ -219,7 +219,7 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
     if not files:
         raise InputError("check needs a file with another program's fixtures: name one or more.")
     from workhold.benchmark.catalogue import set_named
-    from workhold.benchmark.making import compared_entry
+    from workhold.benchmark.making import compare_entry
     from workhold.benchmark.matching import read_entry
     from workhold.cli.warming import compile_kernels
 
@@ -229,9 +229,9 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
     done: list[ComparedFile] = []
     with ask_to_stop("the results so far are printed") as cancel:
         compile_kernels(cancel)
-        with progress_bar("Comparing", "files") as progress:
+        with show_progress("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):
-                outcome = compared_entry(entry, asked.tolerance, words.symmetric, asked.threads, cancel)
+                outcome = compare_entry(entry, asked.tolerance, words.symmetric, asked.threads, cancel)
                 if outcome is None:
                     break
                 done.append((name, entry.set_name, outcome))
@@ -242,14 +242,14 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
 def report_compared(asked: BenchmarkTask, done: Sequence[ComparedFile]) -> None:
     """Print how much of each set another program has."""
     if asked.words.json_:
-        print_json(files=[comparison_data(*one) for one in done])
+        print_json(files=[convert_comparison_to_json(*one) for one in done])
     else:
         print_comparisons(done)
     if len(done) < len(asked.names):
         raise typer.Exit(INTERRUPTED)
 
 
-def comparison_data(name: str, set_name: str, outcome: Comparison) -> dict[str, Any]:
+def convert_comparison_to_json(name: str, set_name: str, outcome: Comparison) -> dict[str, Any]:
     """Return a comparison as an object of JSON; fixtures are numbered from 1."""
     data: dict[str, Any] = {"file": name, "set": set_name, "listed": outcome.listed, "theirs": outcome.theirs}
     for key in ("found", "missed", "extra", "repeated"):
@@ -262,7 +262,7 @@ def print_comparisons(done: Sequence[ComparedFile]) -> None:
     sentences = []
     for _, set_name, one in done:
         numbers = (one.listed, one.theirs, len(one.found), len(one.missed), len(one.extra), len(one.repeated))
-        table.add_row(set_name, *(f"{number:,}" for number in numbers), f"{shown_share(one)} %")
+        table.add_row(set_name, *(f"{number:,}" for number in numbers), f"{format_share(one)} %")
         for words, which in (("Missed", one.missed), ("No fixtures of the set", one.extra)):
             if which:
                 few = ", ".join(str(number + 1) for number in which[:8])
@@ -272,7 +272,7 @@ def print_comparisons(done: Sequence[ComparedFile]) -> None:
     print_tables(table, *sentences)
 
 
-def shown_share(outcome: Comparison) -> str:
+def format_share(outcome: Comparison) -> str:
     """Return the share in percent, which is 100 only where nothing is missed."""
     percent = 100 * outcome.share
     return f"{min(percent, 99.9) if outcome.missed else percent:.1f}"

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import SHOWN_UNIT, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, refuse_output, write_picture
-from workhold.cli.progress import progress_bar
+from workhold.cli.options import SHOWN_UNIT, ResultArgument, read_rank, read_result_with_rank
+from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, refuse_output, write_picture
+from workhold.cli.progress import show_progress
 from workhold.cli.setup_sheets import PART_FILE
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
-    length_unit,
-    optional_count,
-    optional_force,
-    optional_positive_length,
-    printed_unit,
+    choose_printed_unit,
+    read_optional_count,
+    read_optional_force,
+    read_optional_positive_length,
+    read_unit,
 )
 from workhold.errors import InputError
 
@@ -41,26 +41,28 @@ USUAL = 20
 class BendWords:
     """The options of what is bent and how hard, as typed; None for those not given."""
 
-    material: str = option(
+    material: str = make_option(
         PART,
         "NAME",
         "What the part is of: aluminium-6061, aluminium-7075, mild-steel, steel-4140, stainless-304, brass, cast-iron, pom, "
         "pa6 or peek; or Young's modulus in MPa and Poisson's ratio, such as 69000,0.33.",
         default="aluminium-6061",
     )
-    thickness: str | None = option(PART, "LENGTH", "Thickness of the part; that of the result if not given.")
+    thickness: str | None = make_option(
+        PART, "LENGTH", "Thickness of the part; that of the result if not given."
+    )
     part: str | None = PART_FILE
-    cut: str | None = option(
+    cut: str | None = make_option(
         PART,
         "FACES",
         "Faces to be cut, whose bending counts: numbers of faces, top and bottom, such as top,3,5; all if not given.",
     )
-    jaw_force: str | None = option(
+    jaw_force: str | None = make_option(
         CLAMPING,
         "FORCE",
         "Force of the jaws or clamps in N; that of the result if not given, else what its loads need, else 1000 N.",
     )
-    jaw: str = option(
+    jaw: str = make_option(
         CLAMPING,
         "screw|constant|NUMBER",
         "What keeps the jaw closed under loads, as of design.",
@@ -72,21 +74,21 @@ class BendWords:
 class BentWords:
     """The options of what is said of bending, as typed; None for those not given."""
 
-    best: str | None = option(OUTPUT, "K", "So many of the best fixtures; 20 if not given.")
-    rank_by: str | None = option(
+    best: str | None = make_option(OUTPUT, "K", "So many of the best fixtures; 20 if not given.")
+    rank_by: str | None = make_option(
         OUTPUT, "FIGURE", "Order these by clamp-distortion or give, the least first; as listed if not given."
     )
-    bend: str | None = option(OUTPUT, "LENGTH", "Warn of a part that bends or gives by more.")
-    draw: str | None = option(
+    bend: str | None = make_option(OUTPUT, "LENGTH", "Warn of a part that bends or gives by more.")
+    draw: str | None = make_option(
         OUTPUT, "FILE", "Draw the first of these, coloured and bent, into this file (.png or .svg)."
     )
-    glb: str | None = option(
+    glb: str | None = make_option(
         OUTPUT, "FILE", "Write that one in three dimensions, coloured and bent, into this file (.glb)."
     )
     force: bool = FORCE
 
 
-@spread
+@spread_option_groups
 def bend(
     result_file: ResultArgument,
     number: Annotated[
@@ -107,35 +109,35 @@ def bend(
 
     Example: workhold bend part.json --material aluminium-6061 --thickness 12 --jaw-force 3000 --bend 0.02
     """
-    shown = length_unit(unit)
-    rank = None if number is None else asked_rank(number)
+    shown = read_unit(unit)
+    rank = None if number is None else read_rank(number)
     if rank is not None and said.best is not None:
         raise InputError("--best counts fixtures, and one is named: leave one of them out.")
-    picture = asked_picture(said.draw, (result_file, words.part), said.force)
+    picture = read_picture_path(said.draw, (result_file, words.part), said.force)
     model = None if said.glb is None else Path(said.glb)
     if model is not None:
         if model.suffix.lower() != ".glb":
             raise InputError(f"--glb {model} is not the name of a GLB file: let the name end in .glb.")
         refuse_output(model, (result_file, words.part), said.force)
-    limit = optional_positive_length("--bend", said.bend, shown)
+    limit = read_optional_positive_length("--bend", said.bend, shown)
     asked = read_question(words, shown)
     figure = read_figure(said.rank_by)
-    result, rows = read_rows(result_file, rank, optional_count("--best", said.best))
-    from workhold.presenting.assembly import shape_in
+    result, rows = read_rows(result_file, rank, read_optional_count("--best", said.best))
+    from workhold.presenting.assembly import read_part_shape
     from workhold.presenting.bent import make_shape_to_bend
 
     query = result.query
-    shape = shape_in(words.part, result.workpiece)
+    shape = read_part_shape(words.part, result.workpiece)
     whole = make_shape_to_bend(query, asked.height_of(query), shape)
     from workhold.bending.asking import find_bendings
 
     with (
         ask_to_stop("what is found so far is told") as cancel,
-        progress_bar("Bending", f"of {len(rows)}", "Meshing the part") as progress,
+        show_progress("Bending", f"of {len(rows)}", "Meshing the part") as progress,
     ):
         found = find_bendings(result, rows, whole, asked, cancel, progress)
     ranked = rank_bendings(list(zip(rows, found, strict=False)), figure)
-    printed = printed_unit(unit, result.toolkit)
+    printed = choose_printed_unit(unit, result.toolkit)
     written = write_first(ranked, result, picture, model, printed)
     if json_:
         fixtures = [{"rank": row + 1, **one.as_data()} for row, one in ranked]
@@ -162,8 +164,8 @@ def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
     )
     return BendingQuestion(
         find_material(words.material),
-        optional_positive_length("--thickness", words.thickness, unit),
-        optional_force("--jaw-force", words.jaw_force),
+        read_optional_positive_length("--thickness", words.thickness, unit),
+        read_optional_force("--jaw-force", words.jaw_force),
         faces,
         jaw_stiffness(words.jaw),
     )
@@ -179,7 +181,7 @@ def read_figure(name: str | None) -> str | None:
 def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Result, list[int]]:
     """The result, and the indices of the fixtures that are bent."""
     if rank is not None:
-        return result_with(result_file, rank), [rank - 1]
+        return read_result_with_rank(result_file, rank), [rank - 1]
     from workhold.files.result.reader import read_result
 
     result = read_result(result_file)
@@ -251,13 +253,13 @@ def tabulate(
 
     for row, one in ranked:
         bent, give = one.clamp_distortion, one.give
-        cells = [str(row + 1), f"{one.jaw_force / unit.newtons:.0f}", unit.small_number(bent.value)]
-        cells += [unit.small_number(bent.error), place(bent.at)]
+        cells = [str(row + 1), f"{one.jaw_force / unit.newtons:.0f}", unit.format_small_number(bent.value)]
+        cells += [unit.format_small_number(bent.error), place(bent.at)]
         if give is not None:
             because = f"line {give.line}" if give.line is not None else f"load {give.load}"
             cells += [
-                unit.small_number(give.value),
-                unit.small_number(give.error),
+                unit.format_small_number(give.value),
+                unit.format_small_number(give.error),
                 f"{because}: {place(give.at)}",
             ]
         table.add_row(*cells)

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import asdict, frozen
 
-from workhold.cli.commands import flag, option, spread
+from workhold.cli.commands import make_flag, make_option, spread_option_groups
 from workhold.cli.options import SHOWN_UNIT, PartArgument, PartWords
-from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
 from workhold.cli.program_options import SOLIDS
-from workhold.cli.table import Table, plural, print_tables
-from workhold.cli.values import length_from_zero, length_unit
+from workhold.cli.table import Table, format_count, print_tables
+from workhold.cli.values import read_length_from_zero, read_unit
 
 if TYPE_CHECKING:
     from workhold.files.part.loaded import Loaded
@@ -38,21 +38,24 @@ def parts(unit: str | None = SHOWN_UNIT, json_: bool = JSON) -> None:
 
     Example: workhold design widget --pitch 8 --columns 1 --peg-radius 3
     """
-    from workhold.files.part.finding import builtin_parts
+    from workhold.files.part.finding import list_builtin_parts
     from workhold.files.part.load import load
 
-    shown = length_unit(unit)
+    shown = read_unit(unit)
     if json_:
-        from workhold.presenting.data import part_data
+        from workhold.presenting.data import describe_part
 
         print_json(
-            parts=[{**part_data(load(one.name)), "description": one.description} for one in builtin_parts()]
+            parts=[
+                {**describe_part(load(one.name)), "description": one.description}
+                for one in list_builtin_parts()
+            ]
         )
         return
     decimals = shown.decimals - 2
     width, height = f">width {shown.abbreviation}", f">height {shown.abbreviation}"
     table = Table(("name", width, height, ">faces", "description"))
-    for part in builtin_parts():
+    for part in list_builtin_parts():
         workpiece = load(part.name)
         x0, y0, x1, y1 = workpiece.bounds
         size = shown.number(x1 - x0, decimals), shown.number(y1 - y0, decimals)
@@ -78,34 +81,38 @@ def toolkits(
 
     Example: workhold toolkits plate-one-inch --unit inch
     """
-    shown = None if unit is None else length_unit(unit)
-    from workhold.files.toolkit_file import load_toolkit, preset_names
+    shown = None if unit is None else read_unit(unit)
+    from workhold.files.toolkit_file import list_preset_names, load_toolkit
     from workhold.units import MILLIMETRE
 
     if json_:
-        from workhold.presenting.data import toolkit_data
+        from workhold.presenting.data import describe_toolkit
 
         print_json(
-            toolkits=[toolkit_data(load_toolkit(one)) for one in (preset_names() if name is None else [name])]
+            toolkits=[
+                describe_toolkit(load_toolkit(one))
+                for one in (list_preset_names() if name is None else [name])
+            ]
         )
         return
     if name is None:
-        print_tables(toolkits_table(shown or MILLIMETRE))
+        print_tables(tabulate_toolkits(shown or MILLIMETRE))
         return
     loaded = load_toolkit(name)
     print_tables(
-        *(line for line in (loaded.name, loaded.title) if line), figures_table(loaded, shown or loaded.unit)
+        *(line for line in (loaded.name, loaded.title) if line),
+        tabulate_toolkit_figures(loaded, shown or loaded.unit),
     )
     if loaded.source:
         print_tables(f"Source: {loaded.source}.")
 
 
-def toolkits_table(unit: Unit) -> Table:
-    from workhold.files.toolkit_file import load_toolkit, preset_names
+def tabulate_toolkits(unit: Unit) -> Table:
+    from workhold.files.toolkit_file import list_preset_names, load_toolkit
 
     of = unit.abbreviation
     table = Table(("name", f">pitch {of}", f">peg Ø {of}", ">columns", f">peg off by {of}", "what it is"))
-    for name in preset_names():
+    for name in list_preset_names():
         loaded = load_toolkit(name)
         if not loaded.toolkit.plates:
             table.add_row(name, *["-"] * 4, loaded.title)
@@ -113,8 +120,8 @@ def toolkits_table(unit: Unit) -> Table:
         first = loaded.toolkit.plates[0]
         table.add_row(
             name,
-            pitch_words(first.pitch, unit),
-            unit.figure(2 * first.peg_radius),
+            format_pitch(first.pitch, unit),
+            unit.format_short_length(2 * first.peg_radius),
             "any" if first.columns is None else str(first.columns),
             unit.number(loaded.tolerance.peg, unit.decimals + 1),
             loaded.title,
@@ -122,113 +129,119 @@ def toolkits_table(unit: Unit) -> Table:
     return table
 
 
-def figures_table(loaded: LoadedToolkit, unit: Unit) -> Table:
+def tabulate_toolkit_figures(loaded: LoadedToolkit, unit: Unit) -> Table:
     toolkit, of = loaded.toolkit, unit.abbreviation
     if not toolkit.plates:
         table = Table(("figure", "value"))
-        for words, value in own_figures(loaded, unit):
+        for words, value in list_own_figures(loaded, unit):
             table.add_row(words, value)
         return table
     first, finest = toolkit.plates[0], unit.decimals + 1
     each = f"on {'each' if len(toolkit.plates) > 1 else 'the'} {first.noun}"
     table = Table(("figure", "value"))
-    table.add_row("distance between holes", f"{pitch_words(first.pitch, unit)} {of}")
+    table.add_row("distance between holes", f"{format_pitch(first.pitch, unit)} {of}")
     for words, count in (("columns", first.columns), ("rows", first.rows)):
         table.add_row(f"{words} {each}", "as many as needed" if count is None else str(count))
-    table.add_row("peg radius", f"{unit.figure(first.peg_radius, finest)} {of}")
+    table.add_row("peg radius", f"{unit.format_short_length(first.peg_radius, finest)} {of}")
     if first.flat is not None:
-        table.add_row("from a peg's centre to its flat", f"{unit.figure(first.flat.distance, finest)} {of}")
-    for words, value in own_figures(loaded, unit):
+        table.add_row(
+            "from a peg's centre to its flat", f"{unit.format_short_length(first.flat.distance, finest)} {of}"
+        )
+    for words, value in list_own_figures(loaded, unit):
         table.add_row(words, value)
     if loaded.tolerance.fit is not None:
-        table.add_row("pin diameter", limits_words(loaded.tolerance.fit.pin, unit))
-        table.add_row("hole diameter", limits_words(loaded.tolerance.fit.hole, unit))
+        table.add_row("pin diameter", format_limits(loaded.tolerance.fit.pin, unit))
+        table.add_row("hole diameter", format_limits(loaded.tolerance.fit.hole, unit))
         assumed = " (assumed: no source says)" if loaded.tolerance.fit.position_assumed else ""
         table.add_row(
             "largest error of a hole's place",
-            f"{unit.figure(loaded.tolerance.fit.position, finest)} {of}{assumed}",
+            f"{unit.format_short_length(loaded.tolerance.fit.position, finest)} {of}{assumed}",
         )
     assumed = " (assumed: no pin and hole are given)" if loaded.tolerance.fit is None else ""
     table.add_row(
-        "largest error of a peg's surface", f"{unit.figure(loaded.tolerance.peg, finest)} {of}{assumed}"
+        "largest error of a peg's surface",
+        f"{unit.format_short_length(loaded.tolerance.peg, finest)} {of}{assumed}",
     )
-    table.add_row("largest error of a face of the part", f"{unit.figure(loaded.tolerance.face, finest)} {of}")
+    table.add_row(
+        "largest error of a face of the part",
+        f"{unit.format_short_length(loaded.tolerance.face, finest)} {of}",
+    )
     return table
 
 
-def own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
+def list_own_figures(loaded: LoadedToolkit, unit: Unit) -> Iterator[tuple[str, str]]:
     """Yield the figures that only this kind of toolkit has, each with its value in words."""
-    from workhold.fixels.kinds import table_of
+    from workhold.fixels.kinds import find_table
 
     toolkit = loaded.toolkit
     for hardware in (toolkit.supports, toolkit.top_clamp, toolkit.pins):
         for row in () if hardware is None else hardware.table.fields:
             value = getattr(hardware, row.name)
             if row.form in ("length", "stress") and value is not None:
-                yield row.figure, words_of_value(row.form, value, unit)
+                yield row.figure, format_field_value(row.form, value, unit)
             elif value is not None:
-                each = (f"{words_of_value(row.form, one, unit).replace(' to ', ', ')}" for one in value)
+                each = (f"{format_field_value(row.form, one, unit).replace(' to ', ', ')}" for one in value)
                 yield row.figure, "; ".join(each)
-    for row in table_of(loaded.kind).fields:
+    for row in find_table(loaded.kind).fields:
         value = getattr(toolkit, row.name)
-        is_usual = value == (toolkit.followed(row) if row.follows else row.default)
+        is_usual = value == (toolkit.find_followed_length(row) if row.follows else row.default)
         if row.figure and (row.unset or row.is_always_shown or not is_usual):
             assumed = " (assumed: no source says)" if row.name in loaded.assumed else ""
             yield (
                 row.figure,
-                (row.unset if value is None else words_of_value(row.form, value, unit)) + assumed,
+                (row.unset if value is None else format_field_value(row.form, value, unit)) + assumed,
             )
 
 
-def words_of_value(form: Form, value: Any, unit: Unit) -> str:
+def format_field_value(form: Form, value: Any, unit: Unit) -> str:
     """Return the value of a field of some form, as it stands among the figures of a toolkit."""
     if form == "count":
         return str(value)
     if form == "stress":
-        return unit.stress_words(value)
+        return unit.format_stress(value)
     if form == "force":
-        return unit.force_words(value)
+        return unit.format_force(value)
     if form == "choice":
         return str(value)
     if form == "lengths":
-        return f"{', '.join(unit.figure(one) for one in value)} {unit.abbreviation}"
+        return f"{', '.join(unit.format_short_length(one) for one in value)} {unit.abbreviation}"
     if form == "holes":
         return " ".join(holes.name for holes in value)
     if form == "directions":
         return " or ".join(one if isinstance(one, str) else " and ".join(one) for one in value)
     lengths = value if isinstance(value, tuple) else (value,)
-    return f"{' to '.join(unit.figure(one, unit.decimals + 1) for one in lengths)} {unit.abbreviation}"
+    return f"{' to '.join(unit.format_short_length(one, unit.decimals + 1) for one in lengths)} {unit.abbreviation}"
 
 
-def pitch_words(pitch: tuple[float, float], unit: Unit) -> str:
-    x, y = (unit.figure(length) for length in pitch)
+def format_pitch(pitch: tuple[float, float], unit: Unit) -> str:
+    x, y = (unit.format_short_length(length) for length in pitch)
     return x if pitch[0] == pitch[1] else f"{x} x {y}"
 
 
-def limits_words(limits: Limits, unit: Unit) -> str:
-    return f"{unit.number(limits[0])} to {unit.text(limits[1])}"
+def format_limits(limits: Limits, unit: Unit) -> str:
+    return f"{unit.number(limits[0])} to {unit.format_length(limits[1])}"
 
 
 @frozen
 class FeatureWords:
     """The options of what is listed of a part, as typed."""
 
-    draw: str | None = option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png.")
+    draw: str | None = make_option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png.")
     force: bool = FORCE
-    toolkit: str | None = option(
+    toolkit: str | None = make_option(
         None,
         "NAME|FILE",
         "Toolkit that will hold the part: faces of a STEP file get the numbers that design "
         "--toolkit gives them, with pegs no higher than they must be.",
         "--toolkit",
     )
-    peg_radius: str | None = option(
+    peg_radius: str | None = make_option(
         None, "LENGTH", "Also draw where the centres of pegs of this radius can be."
     )
-    parts: bool = flag(
+    parts: bool = make_flag(
         None, "List and draw the parts of a file that holds several, or the solids of a STEP file.", "--parts"
     )
-    layers: bool = flag(None, "List the layers of a DXF file with their contents.", "--layers")
+    layers: bool = make_flag(None, "List the layers of a DXF file with their contents.", "--layers")
     json_: bool = JSON
 
 
@@ -263,7 +276,7 @@ class FeaturesTask:
         return self.reading.load(self.part, held_in.heights, held_in.peg_diameter)
 
 
-@spread
+@spread_option_groups
 def features(part: PartArgument, *, words: FeatureWords, reading: PartWords) -> None:
     """List the numbered faces of PART, as pictures and result files name them.
 
@@ -282,9 +295,9 @@ def features(part: PartArgument, *, words: FeatureWords, reading: PartWords) -> 
 
 def parse(part: str, words: FeatureWords, reading: PartWords) -> FeaturesTask:
     """Read what was typed, but not the part."""
-    unit, radius = length_unit(reading.unit), words.peg_radius
-    wide = None if radius is None else length_from_zero("--peg-radius", radius, unit)
-    picture = asked_picture(words.draw, (part,), words.force)
+    unit, radius = read_unit(reading.unit), words.peg_radius
+    wide = None if radius is None else read_length_from_zero("--peg-radius", radius, unit)
+    picture = read_picture_path(words.draw, (part,), words.force)
     return FeaturesTask(part, words, reading, wide, picture, unit)
 
 
@@ -292,15 +305,20 @@ def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
     """Print and draw the faces of a part, and where pegs of a radius can stand."""
     workpiece, unit = loaded.workpiece, asked.unit
     if not asked.words.json_:
-        from workhold.cli.tables import band_table, face_table, height_table, jumps_sentence
+        from workhold.cli.tables import (
+            explain_missing_face_numbers,
+            tabulate_face_heights,
+            tabulate_faces,
+            tabulate_peg_heights,
+        )
 
         x0, y0, x1, y1 = workpiece.bounds
-        size = f"{unit.number(x1 - x0)} x {unit.text(y1 - y0)}"
-        of_solid = (*band_table(workpiece, unit), *height_table(loaded.heights, unit))
+        size = f"{unit.number(x1 - x0)} x {unit.format_length(y1 - y0)}"
+        of_solid = (*tabulate_face_heights(workpiece, unit), *tabulate_peg_heights(loaded.heights, unit))
         print_tables(
-            f"{workpiece.name}: {size}, {plural(len(workpiece.faces), 'face')}",
-            face_table(workpiece, unit),
-            *jumps_sentence(workpiece),
+            f"{workpiece.name}: {size}, {format_count(len(workpiece.faces), 'face')}",
+            tabulate_faces(workpiece, unit),
+            *explain_missing_face_numbers(workpiece),
             *of_solid,
         )
     if asked.picture is not None:
@@ -310,10 +328,10 @@ def report_faces(asked: FeaturesTask, loaded: Loaded) -> None:
     if not asked.words.json_:
         print_tables(*(f"Drawn in {path}." for path in asked.written))
         return
-    from workhold.presenting.data import part_data
+    from workhold.presenting.data import describe_part
 
     rows = {"heights": [asdict(row) for row in loaded.heights]} if loaded.heights else {}
-    print_json(**part_data(workpiece, loaded.remarks), **rows, written=asked.written)
+    print_json(**describe_part(workpiece, loaded.remarks), **rows, written=asked.written)
 
 
 def report_layers(asked: FeaturesTask) -> None:
@@ -321,10 +339,10 @@ def report_layers(asked: FeaturesTask) -> None:
 
     In JSON sizes are in mm where the unit is known, else in units of the drawing.
     """
-    from workhold.files.part.survey import drawn_layers
+    from workhold.files.part.survey import list_drawn_layers
 
     unit = asked.unit
-    found, known = drawn_layers(asked.part, asked.reading.drawing_unit, asked.reading.unit)
+    found, known = list_drawn_layers(asked.part, asked.reading.drawing_unit, asked.reading.unit)
     if asked.words.json_:
         names = ("name", "kinds", "hidden", "loops", "size")
         print_json(layers=[{name: getattr(one, name) for name in names} for one in found], in_mm=known)
@@ -347,14 +365,16 @@ def report_layers(asked: FeaturesTask) -> None:
 
 
 def report_solids(asked: FeaturesTask) -> None:
-    from workhold.cli.tables import solid_table
+    from workhold.cli.tables import tabulate_solids
     from workhold.files.part.loaded import solids_in
 
     solids = solids_in(asked.part)
     if asked.words.json_:
         print_json(solids=[asdict(solid) for solid in solids])
         return
-    print_tables(solid_table(solids, asked.unit), "Take one of them with --part and its number or its name.")
+    print_tables(
+        tabulate_solids(solids, asked.unit), "Take one of them with --part and its number or its name."
+    )
 
 
 def report_parts(asked: FeaturesTask, loaded: Loaded) -> None:

@@ -18,10 +18,19 @@ import typer
 from attrs import fields, resolve_types
 from typer.core import TyperCommand, TyperGroup
 
-from workhold.cli.table import sentence_lines, width_of
-from workhold.errors import NO_ROOM, plain, shortened
+from workhold.cli.table import find_terminal_width, wrap_sentence
+from workhold.errors import NO_ROOM, make_printable, shorten_middle
 
-__all__ = ["PlainCommand", "PlainGroup", "flag", "forget", "option", "print_remark", "spread", "untyped"]
+__all__ = [
+    "PlainCommand",
+    "PlainGroup",
+    "make_flag",
+    "forget",
+    "make_option",
+    "print_remark",
+    "spread_option_groups",
+    "make_default_group",
+]
 
 
 def print_remark(message: str) -> None:
@@ -29,9 +38,9 @@ def print_remark(message: str) -> None:
 
     Where the disk is full the remark is lost, and nothing else.
     """
-    line = f"workhold: {plain(shortened(message))}"
+    line = f"workhold: {make_printable(shorten_middle(message))}"
     if sys.stderr.isatty():
-        line = "\n".join(sentence_lines(line, width_of(sys.stderr)))
+        line = "\n".join(wrap_sentence(line, find_terminal_width(sys.stderr)))
     try:
         typer.echo(line, err=True)
     except OSError as error:
@@ -57,17 +66,17 @@ Words = TypeVar("Words")
 WIDEST_ENTRY = 27
 
 
-def option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
+def make_option(panel: str | None, metavar: str, help: str, *names: str, default: str | None = None) -> Any:
     """Make an option in a section of the help: the default of a parameter, or of a field of a group."""
     return typer.Option(default, *names, metavar=metavar, help=help, rich_help_panel=panel)
 
 
-def flag(panel: str | None, help: str, name: str) -> Any:
-    """Make an option without a value, off if not given; see :func:`option`."""
+def make_flag(panel: str | None, help: str, name: str) -> Any:
+    """Make an option without a value, off if not given; see :func:`make_option`."""
     return typer.Option(False, name, help=help, rich_help_panel=panel)
 
 
-def spread(command: Callable[..., None]) -> Callable[..., None]:
+def spread_option_groups(command: Callable[..., None]) -> Callable[..., None]:
     """Replace each parameter of a command that is a group of options by the options of the group.
 
     A group is an attrs class whose fields are options.
@@ -96,7 +105,7 @@ def spread(command: Callable[..., None]) -> Callable[..., None]:
     return spread_out
 
 
-def untyped(kind: type[Words], **typed: Any) -> Words:
+def make_default_group(kind: type[Words], **typed: Any) -> Words:
     """Return a group of options as it is where none is typed but these."""
     usual = {name: one.default.default for name, one in signature(kind).parameters.items()}
     return kind(**usual | typed)
@@ -107,7 +116,7 @@ class PlainCommand(TyperCommand):
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters and the help option, whose words are not checked here."""
-        return as_typed(super().get_params(ctx))
+        return pass_words_unchecked(super().get_params(ctx))
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Write usage, text, and the parameters by their sections."""
@@ -122,7 +131,7 @@ class PlainGroup(TyperGroup):
 
     def get_params(self, ctx: Any) -> list[Any]:
         """Return the parameters and the help option, whose words are not checked here."""
-        return as_typed(super().get_params(ctx))
+        return pass_words_unchecked(super().get_params(ctx))
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse the words before the subcommand; without any word it shows the help, unless a shell
@@ -141,28 +150,28 @@ class PlainGroup(TyperGroup):
         commands = [
             (name, cleandoc(command.help or "").split("\n\n")[0]) for name, command in self.commands.items()
         ]
-        with formatter.section(heading(COMMANDS)):
+        with formatter.section(format_heading(COMMANDS)):
             formatter.write_dl(commands, col_max=WIDEST_ENTRY)
         restore_hyphens(formatter)
         formatter.write(f"\n{cleandoc(self.epilog or '')}\n")
 
 
-def as_typed(parameters: list[Any]) -> list[Any]:
+def pass_words_unchecked(parameters: list[Any]) -> list[Any]:
     """Let parameters hand on a word, or None for an option not given, without a check."""
     for parameter in parameters:
         if "process_value" not in vars(parameter):
-            parameter.process_value = partial(taken, parameter, parameter.process_value)
+            parameter.process_value = partial(take_parameter_value, parameter, parameter.process_value)
     return parameters
 
 
-def taken(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
+def take_parameter_value(parameter: Any, checked: Callable[[Any, Any], Any], ctx: Any, value: Any) -> Any:
     """Return the value of a parameter; Typer checks what is neither a word nor an option not given."""
     if isinstance(value, str) or (value is None and not parameter.required):
         return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
     return checked(ctx, value)
 
 
-def heading(words: str) -> str:
+def format_heading(words: str) -> str:
     """Make a heading of the help, bold on a terminal."""
     return typer.style(words, bold=True)
 
@@ -171,10 +180,10 @@ def heading(words: str) -> str:
 NO_BREAK = "\N{NON-BREAKING HYPHEN}"
 
 
-def unbroken(text: str) -> str:
+def replace_hyphens(text: str) -> str:
     """Replace hyphens by those at which no line is broken.
 
-    >>> unbroken("--peg-radius").count("-")
+    >>> replace_hyphens("--peg-radius").count("-")
     0
     """
     return text.replace("-", NO_BREAK)
@@ -188,7 +197,7 @@ def restore_hyphens(formatter: Any) -> None:
 def write_text(command: Any, formatter: Any) -> None:
     formatter.write_paragraph()
     with formatter.indentation():
-        formatter.write_text(unbroken(cleandoc(command.help or "")))
+        formatter.write_text(replace_hyphens(cleandoc(command.help or "")))
 
 
 def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
@@ -203,7 +212,7 @@ def write_sections(command: Any, ctx: Any, formatter: Any) -> None:
             # Typer would add the type of the value, which is text for all of them.
             others, entry = ARGUMENTS, (parameter.metavar, entry[1])
         panel = getattr(parameter, "rich_help_panel", None) or others
-        sections.setdefault(panel, []).append((entry[0], unbroken(entry[1])))
+        sections.setdefault(panel, []).append((entry[0], replace_hyphens(entry[1])))
     for name in sorted(sections, key=lambda name: name == OPTIONS):
-        with formatter.section(heading(name)):
+        with formatter.section(format_heading(name)):
             formatter.write_dl(sections[name], col_max=WIDEST_ENTRY)

@@ -11,20 +11,20 @@ from typing import TYPE_CHECKING, Any
 from attrs import field
 
 from workhold.asking.declaring import Declaration, Form
-from workhold.cli.commands import flag, option
+from workhold.cli.commands import make_flag, make_option
 from workhold.cli.values import (
-    choice,
-    in_unit,
-    length,
-    length_from_zero,
     number,
-    optional_count,
-    optional_force,
-    optional_positive_length,
-    positive_number,
-    three_lengths,
-    two_lengths,
-    whole_number,
+    read_choice,
+    read_length,
+    read_length_from_zero,
+    read_optional_count,
+    read_optional_force,
+    read_optional_positive_length,
+    read_positive_number,
+    read_quantity,
+    read_three_lengths,
+    read_two_lengths,
+    read_whole_number,
 )
 from workhold.errors import InputError
 from workhold.units import Unit
@@ -33,29 +33,29 @@ if TYPE_CHECKING:
     from workhold.model.requirements import Zone
 
 __all__ = [
-    "one_flag",
-    "one_word",
-    "lengths_between",
-    "option_of",
-    "options_of",
+    "make_flag_attribute",
+    "make_word_attribute",
+    "read_separated_lengths",
+    "make_field_option",
+    "make_option_attributes",
     "read_words",
     "read_zone",
-    "several_words",
+    "make_list_attribute",
 ]
 
 # Forms of which an option may be given more than once.
 SEVERAL: frozenset[Form] = frozenset({"faces", "zones", "angles", "names", "rings"})
 
 
-def option_of(row: Declaration) -> Any:
+def make_field_option(row: Declaration) -> Any:
     """Make the option of a field: the default of a parameter."""
     words = row.typed or row.help
     if row.form == "flag":
-        return flag(row.section, words, row.option)
-    return option(row.section, row.metavar, words, row.option, default=typed_default(row))
+        return make_flag(row.section, words, row.option)
+    return make_option(row.section, row.metavar, words, row.option, default=format_default(row))
 
 
-def typed_default(row: Declaration) -> str | None:
+def format_default(row: Declaration) -> str | None:
     """Return the default as it would be typed; None where the help says what counts."""
     if row.typed_default:
         return row.typed_default
@@ -64,60 +64,62 @@ def typed_default(row: Declaration) -> str | None:
     return f"{row.default:g}" if isinstance(row.default, float) else str(row.default)
 
 
-def one_word(option: Any) -> Any:
+def make_word_attribute(option: Any) -> Any:
     """Make the attribute of an option that is no field of a question."""
     kind: Any = str | None
     return field(default=option, type=kind)
 
 
-def one_flag(option: Any) -> Any:
+def make_flag_attribute(option: Any) -> Any:
     """Make the attribute of an option without a value that is no field."""
     return field(default=option, type=bool)
 
 
-def several_words(option: Any) -> Any:
+def make_list_attribute(option: Any) -> Any:
     """Make the attribute of such an option that may be given more than once."""
     kind: Any = list[str] | None
     return field(default=option, type=kind)
 
 
-def options_of(rows: Iterable[Declaration], **beside: Any) -> dict[str, Any]:
+def make_option_attributes(rows: Iterable[Declaration], **beside: Any) -> dict[str, Any]:
     """Make the attributes of a group of options: those of fields, and beside them options that are no fields.
 
     Parameters
     ----------
-    beside : by its name an option of :func:`one_word` or :func:`several_words`, or by the field before which they stand a
-        mapping of such.
+    beside : by its name an option of :func:`make_word_attribute` or :func:`make_list_attribute`, or by the
+        field before which they stand a mapping of such.
     """
     out: dict[str, Any] = {}
     for row in rows:
         out |= beside.pop(row.name, {})
         kind: Any = bool if row.form == "flag" else list[str] | None if row.form in SEVERAL else str | None
-        out[row.argument] = field(default=option_of(row), type=kind)
+        out[row.argument] = field(default=make_field_option(row), type=kind)
     return out | beside
 
 
-def read_length(row: Declaration, text: str, unit: Unit) -> float | None:
+def read_declared_length(row: Declaration, text: str, unit: Unit) -> float | None:
     match row.least:
         case "above 0":
-            return optional_positive_length(row.option, text, unit)
+            return read_optional_positive_length(row.option, text, unit)
         case "0":
-            return length_from_zero(row.option, text, unit)
-    return length(row.option, text, unit)
+            return read_length_from_zero(row.option, text, unit)
+    return read_length(row.option, text, unit)
 
 
 def read_rings(row: Declaration, texts: list[str], unit: Unit) -> list[tuple[float, ...]]:
-    return [lengths_between(row.option, text, ",", 4, unit) for text in texts]
+    return [read_separated_lengths(row.option, text, ",", 4, unit) for text in texts]
 
 
-def lengths_between(option_name: str, text: str, mark: str, count: int, unit: Unit) -> tuple[float, ...]:
-    """Read some lengths with a mark between them; returns them in mm."""
+def read_separated_lengths(
+    option_name: str, text: str, mark: str, count: int, unit: Unit
+) -> tuple[float, ...]:
+    """Read some lengths with a mark between them; return them in mm."""
     words = text.split(mark)
     if len(words) != count:
         raise InputError(
             f"{option_name} {text!r} cannot be used: give {count} lengths with {mark!r} between them."
         )
-    return tuple(length(option_name, word, unit) for word in words)
+    return tuple(read_length(option_name, word, unit) for word in words)
 
 
 def read_day(row: Declaration, text: str, unit: Unit) -> date:
@@ -130,11 +132,11 @@ def read_day(row: Declaration, text: str, unit: Unit) -> date:
 
 
 def read_faces(row: Declaration, texts: list[str], unit: Unit) -> tuple[int, ...]:
-    return tuple(whole_number(row.option, word) for text in texts for word in text.split(","))
+    return tuple(read_whole_number(row.option, word) for text in texts for word in text.split(","))
 
 
 def read_angles(row: Declaration, texts: list[str], unit: Unit) -> tuple[tuple[float, float], ...]:
-    """Ranges of angles in degrees from words such as ``-10..10``; a single number is that angle alone."""
+    """Return the ranges of angles in degrees from words such as ``-10..10``; a single number is that angle alone."""
     return tuple(read_angle(row.option, text) for text in texts)
 
 
@@ -154,7 +156,7 @@ def read_zone(option_name: str, text: str, unit: Unit) -> Zone:
 
     kind, _, rest = text.partition("=")
     points = [
-        [length(option_name, word, unit) for word in words.split(",")]
+        [read_length(option_name, word, unit) for word in words.split(",")]
         for words in rest.split(";")
         if words.strip()
     ]
@@ -180,11 +182,11 @@ def read_power(option_name: str, text: str) -> float:
     (2.2, 2.237)
     """
     remedy = "a power above 0: give it in kW, such as 2.2, or as 3hp."
-    return in_unit(option_name, text, POWER_WORDS, POWERS, "kw", remedy)
+    return read_quantity(option_name, text, POWER_WORDS, POWERS, "kw", remedy)
 
 
 def read_force(row: Declaration, text: str, unit: Unit) -> float | None:
-    return 0.0 if row.least == "0" and text.strip() == "0" else optional_force(row.option, text)
+    return 0.0 if row.least == "0" and text.strip() == "0" else read_optional_force(row.option, text)
 
 
 # How the words of an option are read, by the form of its field; words of other forms stay as they are.
@@ -203,21 +205,21 @@ def read_coefficients(option_name: str, text: str) -> dict[str, float]:
             raise InputError(
                 f"{option_name} {text!r} names no coefficients: give them as jaw=0.15,plate=0.15."
             )
-        out[name.strip().lower()] = positive_number(option_name, value)
+        out[name.strip().lower()] = read_positive_number(option_name, value)
     return out
 
 
 READERS: Mapping[Form, Callable[[Declaration, Any, Unit], Any]] = {
-    "count": lambda row, text, unit: optional_count(row.option, text),
-    "length": read_length,
+    "count": lambda row, text, unit: read_optional_count(row.option, text),
+    "length": read_declared_length,
     "force": read_force,
     "power": lambda row, text, unit: read_power(row.option, text),
-    "number": lambda row, text, unit: positive_number(row.option, text),
-    "choice": lambda row, text, unit: choice(row.option, text, row.choices),
-    "place": lambda row, text, unit: two_lengths(
+    "number": lambda row, text, unit: read_positive_number(row.option, text),
+    "choice": lambda row, text, unit: read_choice(row.option, text, row.choices),
+    "place": lambda row, text, unit: read_two_lengths(
         row.option, text, unit, "a position: give it as X,Y, such as -312.5,-88."
     ),
-    "point": lambda row, text, unit: three_lengths(
+    "point": lambda row, text, unit: read_three_lengths(
         row.option, text, unit, "a place: give three lengths, such as 0,0,50."
     ),
     "day": read_day,

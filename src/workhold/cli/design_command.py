@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any, TextIO
 import typer
 from attrs import frozen
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SEARCH, SearchQuestion
-from workhold.cli.commands import flag, option, print_remark, spread
-from workhold.cli.declared import one_flag, one_word, options_of, read_words
-from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, picture_names
+from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
+from workhold.cli.declared import make_flag_attribute, make_option_attributes, make_word_attribute, read_words
+from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, list_picture_names
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import CALLED, PartArgument, PartWords
 from workhold.cli.outputs import (
@@ -23,7 +23,7 @@ from workhold.cli.outputs import (
     JSON,
     OUTPUT,
     STANDARD_OUTPUT,
-    output_form,
+    choose_output_form,
     print_json,
     refuse_both,
     refuse_output_folder,
@@ -32,12 +32,18 @@ from workhold.cli.outputs import (
 )
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.progress import search_progress
-from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of, without_faces_cut
-from workhold.cli.setup_sheets import first_sheet, refuse_sheet
-from workhold.cli.supports_command import asked_thickness, report_supported
-from workhold.cli.table import plural, print_tables
+from workhold.cli.search_options import QueryWords, SeatingWords, add_dowel_fit, avoid_faces_cut_before
+from workhold.cli.setup_sheets import refuse_sheet, write_first_sheet
+from workhold.cli.supports_command import read_asked_thickness, report_supported
+from workhold.cli.table import format_count, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
-from workhold.cli.values import choice, length_unit, optional_count, printed_unit, whole_number
+from workhold.cli.values import (
+    choose_printed_unit,
+    read_choice,
+    read_optional_count,
+    read_unit,
+    read_whole_number,
+)
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -55,21 +61,21 @@ EVERY_TYPE = "both"
 ENGINES = ("curves", "algebra")
 # Bytes of a fixture in a file of each form, and the largest file that is text.
 BYTES, MOST_TEXT = {"json": 960, "csv": 550, "npz": 225}, 7e8
-OF_ONE = declarations_of(SearchQuestion, [SEARCH])
-TYPE = option(
+OF_ONE = list_declarations(SearchQuestion, [SEARCH])
+TYPE = make_option(
     SEARCH,
     "I|II|both",
     "For a vise: I is two pegs on each jaw; II is three on the left jaw and one on the right.",
     "--type",
     default="both",
 )
-ALL = flag(
+ALL = make_flag(
     SEARCH,
     "List all fixtures, however many there are; otherwise, of more than 200,000 only the "
     "best 1,000 are listed.",
     "--all",
 )
-ENGINE = option(
+ENGINE = make_option(
     SEARCH,
     "curves|algebra",
     "curves: the fast search. algebra: the paper's own polynomials, slower; both list the same fixtures.",
@@ -78,12 +84,12 @@ ENGINE = option(
 
 
 @frozen(
-    these=options_of(
+    these=make_option_attributes(
         OF_ONE,
-        best={"type_": one_word(TYPE)},
-        listing={"every": one_flag(ALL)},
-        threads=one_word(option(SEARCH, "N", "Threads to use; all processors if not given.")),
-        engine=one_word(ENGINE),
+        best={"type_": make_word_attribute(TYPE)},
+        listing={"every": make_flag_attribute(ALL)},
+        threads=make_word_attribute(make_option(SEARCH, "N", "Threads to use; all processors if not given.")),
+        engine=make_word_attribute(ENGINE),
     )
 )
 class SearchWords:
@@ -101,22 +107,24 @@ class SearchWords:
 class OutputWords:
     """The options of where the answer goes, as typed."""
 
-    out: str | None = option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal.")
+    out: str | None = make_option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal.")
     format_: str | None = FORMAT
-    draw: str | None = option(
+    draw: str | None = make_option(
         OUTPUT,
         "DIR",
         "Draw the best twelve fixtures and a sheet of thumbnails, or the nearest miss, into this folder.",
     )
     force: bool = FORCE
-    list_: str = option(OUTPUT, "N", "Number of fixtures to list on the terminal.", "--list", default="5")
-    unfit: bool = flag(OUTPUT, "Also list fixtures that no workshop can use, in red.", "--unfit")
-    supports: bool = flag(
+    list_: str = make_option(
+        OUTPUT, "N", "Number of fixtures to list on the terminal.", "--list", default="5"
+    )
+    unfit: bool = make_flag(OUTPUT, "Also list fixtures that no workshop can use, in red.", "--unfit")
+    supports: bool = make_flag(
         OUTPUT,
         "Also find three supports and a clamp on top for the best twenty, as supports does.",
         "--supports",
     )
-    sheet: str | None = option(
+    sheet: str | None = make_option(
         OUTPUT,
         "FILE",
         "Write the setup sheet of the first choice into this file (.pdf, .svg, .png); with "
@@ -124,7 +132,7 @@ class OutputWords:
     )
     json_: bool = JSON
 
-    def output(self, inputs: tuple[str | None, ...], before: str | None) -> Output:
+    def read_output(self, inputs: tuple[str | None, ...], before: str | None) -> Output:
         """Return where the answer goes.
 
         Parameters
@@ -137,8 +145,8 @@ class OutputWords:
         InputError
             For what cannot be written there, and two things in one place.
         """
-        listed = whole_number("--list", self.list_)
-        form = output_form(self.out, self.format_)
+        listed = read_whole_number("--list", self.list_)
+        form = choose_output_form(self.out, self.format_)
         refuse_both(self.json_, self.out)
         if self.json_ and self.supports:
             raise InputError("--supports prints a table: leave --json out, or ask the command supports.")
@@ -146,7 +154,7 @@ class OutputWords:
         if self.out is not None and self.out != STANDARD_OUTPUT:
             refuse_result_file(self.out, form, inputs, self.force)
         if folder is not None:
-            refuse_output_folder(folder, picture_names(), inputs, self.force)
+            refuse_output_folder(folder, list_picture_names(), inputs, self.force)
         refuse_sheet(self.sheet, (*inputs, before), self.out, self.force)
         return Output(self.out, form, folder, listed, self.unfit, self.sheet, before, self.json_)
 
@@ -221,7 +229,7 @@ class DesignAnswer:
     spent: str
 
 
-@spread
+@spread_option_groups
 def design(
     part: PartArgument,
     *,
@@ -256,34 +264,38 @@ def parse(
     reading: PartWords,
 ) -> DesignTask:
     """Read what was typed: all that is cheap before any file, and all of it before the search."""
-    shown = length_unit(reading.unit)
-    threads = optional_count("--threads", searched.threads)
-    engine = choice("--engine", searched.engine, ENGINES)
+    shown = read_unit(reading.unit)
+    threads = read_optional_count("--threads", searched.threads)
+    engine = read_choice("--engine", searched.engine, ENGINES)
     if searched.every and searched.best is not None:
         raise InputError("--all and --best are opposites: leave one of them out.")
     asked = read_words(OF_ONE, searched, shown)
     files = part, held_in.vise, words.loads, *machined.files
-    output = written.output(files, words.not_on_faces_cut_in)
-    toolkit, tolerance = held_in.asked(shown)
-    asked |= words.asked(shown, machined.program is not None, machined.has_forces) | seated_by.asked(shown)
-    asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
-    type_ = choice("--type", searched.type_, (*toolkit.types, EVERY_TYPE))
+    output = written.read_output(files, words.not_on_faces_cut_in)
+    toolkit, tolerance = held_in.read_toolkit(shown)
+    asked |= words.read_arguments(
+        shown, machined.program is not None, machined.has_forces
+    ) | seated_by.read_arguments(shown)
+    asked["tolerance"] = add_dowel_fit(asked["tolerance"], tolerance)
+    type_ = read_choice("--type", searched.type_, (*toolkit.types, EVERY_TYPE))
     from workhold.files.part.load import refuse_unsure_numbers
     from workhold.geometry.segment import Box
     from workhold.model.query import Query
     from workhold.model.requirements import describe_far_loads
 
-    loaded = machined.reading(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
+    loaded = machined.adapt_part_options(part, reading).load(part, toolkit.heights, toolkit.peg_diameter)
     refuse_unsure_numbers(loaded, asked["restrictions"].avoid, CALLED)
     workpiece = loaded.workpiece
-    asked |= machined.asked(shown, reading.peg_height, workpiece)
-    asked["restrictions"] = without_faces_cut(asked["restrictions"], workpiece, words.not_on_faces_cut_in)
+    asked |= machined.read_query_arguments(shown, reading.peg_height, workpiece)
+    asked["restrictions"] = avoid_faces_cut_before(
+        asked["restrictions"], workpiece, words.not_on_faces_cut_in
+    )
     thickness = machined.thickness if written.supports or machined.program is None else None
-    high = asked_thickness(written.supports, thickness, workpiece, shown)
+    high = read_asked_thickness(written.supports, thickness, workpiece, shown)
     query = Query(workpiece, toolkit, None if type_ == EVERY_TYPE else type_, **asked)
     for remark in describe_far_loads(query.loads, Box(*workpiece.bounds)):
         print_remark(remark)
-    unit = printed_unit(reading.unit, toolkit)
+    unit = choose_printed_unit(reading.unit, toolkit)
     return DesignTask(query, loaded, searched.every, threads, engine, high, unit, output)
 
 
@@ -305,8 +317,8 @@ def ask(asked: DesignTask) -> DesignAnswer:
         with search_progress() as progress:
             if engine == "curves":
                 progress(0.0, 0)
-                query, estimated = as_many_as_asked(asked, cancel)
-            result = answered(
+                query, estimated = limit_query_to_best(asked, cancel)
+            result = search_and_stream(
                 query, engine, streamed, threads=asked.threads, progress=progress, cancel=cancel
             )
     if output.out is not None and streamed is None:
@@ -323,14 +335,14 @@ def report(asked: DesignTask, answer: DesignAnswer) -> None:
 
 
 def report_as_json(asked: DesignTask, answer: DesignAnswer) -> None:
-    from workhold.listing.identity import entries
-    from workhold.presenting.data import result_data
+    from workhold.listing.identity import make_entries
+    from workhold.presenting.data import describe_result
 
     result, output = answer.result, asked.output
-    further = further_data(asked, result) | {"estimated": answer.estimated}
+    further = make_further_data(asked, result) | {"estimated": answer.estimated}
     if output.sheet is not None:
-        further["sheet"] = None if sheet_of_first(asked, result) is None else output.sheet
-    listed = result_data(result, entries(result, output.with_unfit), max(output.listed, 0))
+        further["sheet"] = None if write_sheet_of_first(asked, result) is None else output.sheet
+    listed = describe_result(result, make_entries(result, output.with_unfit), max(output.listed, 0))
     print_json(**listed, result_file=output.out, **further)
 
 
@@ -343,18 +355,22 @@ def report_in_words(asked: DesignTask, answer: DesignAnswer) -> None:
     if not result.complete:
         return
     if not any(result.found.values()) and asked.engine == "curves":
-        from workhold.cli.tables import other_heights
+        from workhold.cli.tables import suggest_other_heights
 
         explain_none(result, asked.threads, output.folder, unit, output.stream)
-        print_tables(*other_heights(result.workpiece, asked.loaded.heights, unit), stream=output.stream)
+        print_tables(
+            *suggest_other_heights(result.workpiece, asked.loaded.heights, unit), stream=output.stream
+        )
     elif output.folder is not None:
         drawn = draw_best(result, output.folder, unit)
         pictures = (
-            f"Drawn: {plural(len(drawn), 'picture')} in {output.folder}." if drawn else "Nothing to draw."
+            f"Drawn: {format_count(len(drawn), 'picture')} in {output.folder}."
+            if drawn
+            else "Nothing to draw."
         )
         print_tables(pictures, stream=output.stream)
     if output.sheet is not None:
-        rank = sheet_of_first(asked, result, supported)
+        rank = write_sheet_of_first(asked, result, supported)
         print_tables(
             f"As there is no fixture, {output.sheet} was not written."
             if rank is None
@@ -363,26 +379,28 @@ def report_in_words(asked: DesignTask, answer: DesignAnswer) -> None:
         )
 
 
-def sheet_of_first(asked: DesignTask, result: Result, supported: tuple[Supports, ...] = ()) -> int | None:
-    """Write the setup sheet of the first choice; returns its rank, or None where there is no fixture."""
+def write_sheet_of_first(
+    asked: DesignTask, result: Result, supported: tuple[Supports, ...] = ()
+) -> int | None:
+    """Write the setup sheet of the first choice; return its rank, or None where there is no fixture."""
     output = asked.output
     assert output.sheet is not None
-    return first_sheet(
+    return write_first_sheet(
         result, output.sheet, output.out, asked.thickness, asked.unit, output.before, supported
     )
 
 
-def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | None]:
+def limit_query_to_best(asked: DesignTask, cancel: Event) -> tuple[Query, int | None]:
     """Return the query, or one for the best fixtures where there are very many, and about how many.
 
     A remark says so before the search. Refuses all of very many without a file that can carry them.
     """
-    from workhold.limits import thread_count
+    from workhold.limits import choose_thread_count
     from workhold.model.notes import round_to_two_digits
     from workhold.search.estimate import LISTED, MANY, ask_for_best_where_many
 
     output = asked.output
-    query, count = ask_for_best_where_many(asked.query, thread_count(asked.threads), cancel)
+    query, count = ask_for_best_where_many(asked.query, choose_thread_count(asked.threads), cancel)
     if count is None or count <= MANY:
         return asked.query, count
     name = "" if output.file is None else f" in {output.file}"
@@ -403,7 +421,9 @@ def as_many_as_asked(asked: DesignTask, cancel: Event) -> tuple[Query, int | Non
     return asked.query, count
 
 
-def answered(query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any) -> Result:
+def search_and_stream(
+    query: Query, engine: str, streamed: str | None, threads: int | None, **watching: Any
+) -> Result:
     """Return the answer of an engine; where ``streamed`` names a file it is written during the search."""
     if engine == "algebra":
         from workhold.algebra.engine import find_fixtures_by_algebra
@@ -422,30 +442,30 @@ def answered(query: Query, engine: str, streamed: str | None, threads: int | Non
 def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None:
     """Print the notes, the best fixtures, how many there are, and the proof."""
     from workhold.cli.tables import (
-        counts_sentence,
-        first_sentence,
-        proof_sentences,
-        result_table,
-        unfit_sentence,
+        count_fixtures_in_words,
+        count_unfit_in_words,
+        describe_proof_and_undecided,
+        explain_first_fixture,
+        tabulate_result,
     )
-    from workhold.listing.identity import entries
+    from workhold.listing.identity import make_entries
 
     for note in result.notes:
         print_remark(note.words)
-    shown = entries(result, output.with_unfit)
+    shown = make_entries(result, output.with_unfit)
     if len(result) and output.listed > 0:
-        print_tables(result_table(result, shown, output.listed, unit), stream=output.stream)
-        if reason := first_sentence(result, unit):
+        print_tables(tabulate_result(result, shown, output.listed, unit), stream=output.stream)
+        if reason := explain_first_fixture(result, unit):
             print_tables(reason, stream=output.stream)
-    sentence = counts_sentence(result)
+    sentence = count_fixtures_in_words(result)
     if not sum(result.found.values()):
         found = "exists" if result.complete else "was found before the interruption"
         sentence = (
             f"No fixture {found} for {result.workpiece.name} {result.toolkit.wording.inside}: the count is 0"
         )
     out = output.file
-    proof = proof_sentences(result, out if output.form != "csv" else None)
-    left_out = [unfit_sentence(shown.unfit, bool(result.holds))] if shown.unfit else []
+    proof = describe_proof_and_undecided(result, out if output.form != "csv" else None)
+    left_out = [count_unfit_in_words(shown.unfit, bool(result.holds))] if shown.unfit else []
     print_tables(f"{sentence}; {spent}.", *left_out, *proof, stream=output.stream)
     if out is not None:
         print_tables(f"Written to {out}.", stream=output.stream)
@@ -454,7 +474,7 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
         print_remark(f"interrupted: these are only some of the fixtures{marked}.")
 
 
-def further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
+def make_further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
     """Return why there is no fixture, and the pictures drawn, as plain data.
 
     A search that was interrupted has neither.
@@ -462,11 +482,11 @@ def further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
     explained, written = None, []
     folder, unit = asked.output.folder, asked.unit
     if result.complete and not any(result.found.values()) and asked.engine == "curves":
-        from workhold.presenting.data import explanation_data
+        from workhold.presenting.data import describe_explanation
         from workhold.search.explaining import explain
 
         why = explain(result.query, asked.threads, unit)
-        explained = explanation_data(why, result.toolkit)
+        explained = describe_explanation(why, result.toolkit)
         if folder is not None and why.nearest is not None:
             written = draw_one(why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
     elif result.complete and folder is not None:

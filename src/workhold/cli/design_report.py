@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 from workhold.cli.table import Table, print_tables
-from workhold.files.atomic import plain_errors, unfinished
+from workhold.files.atomic import explain_system_errors, unfinished
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from workhold.model.search_report import Explanation
     from workhold.units import Unit
 
-__all__ = ["NEAREST_MISS", "THUMBNAILS", "draw_best", "draw_one", "explain_none", "picture_names"]
+__all__ = ["NEAREST_MISS", "THUMBNAILS", "draw_best", "draw_one", "explain_none", "list_picture_names"]
 
 BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")
 THUMBNAILS, NEAREST_MISS = "thumbnails", "nearest-miss"
 
 
-def picture_names() -> list[str]:
-    ranked = (picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
+def list_picture_names() -> list[str]:
+    ranked = (make_picture_name(rank) for rank in range(1, BEST_DRAWN + 1))
     return [f"{name}{ending}" for name in (THUMBNAILS, NEAREST_MISS, *ranked) for ending in ENDINGS]
 
 
-def picture_name(place: int) -> str:
+def make_picture_name(place: int) -> str:
     """Return the name of the picture of the entry in a place, counted from 1, without its ending."""
     return f"fixture-{place:02d}"
 
@@ -38,7 +38,7 @@ def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: s
     """Draw one fixture of a result into a folder, as SVG and PNG, and return the files written."""
     from workhold.drawing.fixture_pictures import draw_fixture
 
-    with plain_errors(folder):
+    with explain_system_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
     svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=title, unit=unit)
     return write_pictures({name: svg}, folder)
@@ -72,23 +72,23 @@ def draw_best(result: Result, folder: Path, unit: Unit) -> list[Path]:
     The folder is created. Pictures of these names from an earlier design are replaced, or removed where this
     design has fewer fixtures; nothing else in the folder is touched.
     """
-    from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
-    from workhold.drawing.path_drawn import planned_path
-    from workhold.listing.identity import entries
+    from workhold.drawing.fixture_pictures import draw_best_thumbnails, draw_fixture
+    from workhold.drawing.path_drawn import make_planned_path
+    from workhold.listing.identity import make_entries
 
-    with plain_errors(folder):
+    with explain_system_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        for old in picture_names():
+        for old in list_picture_names():
             (folder / old).unlink(missing_ok=True)
-    shown = entries(result)
+    shown = make_entries(result)
     pictures = {}
     for place, index in enumerate(shown.index[:BEST_DRAWN].tolist(), 1):
-        held, path = (result[index], result.workpiece, result.toolkit), planned_path(result, index)
+        held, path = (result[index], result.workpiece, result.toolkit), make_planned_path(result, index)
         svg = draw_fixture(*held, title=f"Fixture {index + 1}", unit=unit, path=path)
-        pictures[picture_name(place)] = svg
+        pictures[make_picture_name(place)] = svg
     if not pictures:
         return []
-    pictures[THUMBNAILS] = best_at_a_glance(result, shown, unit)
+    pictures[THUMBNAILS] = draw_best_thumbnails(result, shown, unit)
     return write_pictures(pictures, folder)
 
 
@@ -115,7 +115,7 @@ def print_explanation(
     explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[Note] = ()
 ) -> None:
     """Print the explanation, without what was said before."""
-    from workhold.cli.tables import fixture_tables
+    from workhold.cli.tables import tabulate_fixture_setup
 
     print_tables("", stream=stream)
     if explanation.contacts:
@@ -131,7 +131,7 @@ def print_explanation(
     if explanation.asked_words:
         print_tables(explanation.asked_words, stream=stream)
     if explanation.nearest is not None:
-        _, _, _, pegs = fixture_tables(explanation.nearest.fixture, toolkit, 1, 1, unit)
+        _, _, _, pegs = tabulate_fixture_setup(explanation.nearest.fixture, toolkit, 1, 1, unit)
         print_tables("", f"Nearest miss: {explanation.nearest.words}", pegs, stream=stream)
     print_tables("", stream=stream)
     if not explanation.helps:

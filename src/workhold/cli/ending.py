@@ -62,17 +62,17 @@ class Ending:
         self.code: int | None = None
 
     def note(self, number: int) -> None:
-        """Notes a signal: the first starts a timer, a second one ends the process."""
+        """Note a signal: the first starts a timer, a second one ends the process."""
         now = monotonic()
         if self.noted_at is None:
             self.noted_at = now
-            self.timer = threading.Timer(GRACE, self.lose_patience, (number,))
+            self.timer = threading.Timer(GRACE, self.end_impatiently, (number,))
             self.timer.daemon = True
             self.timer.start()
         elif now - self.noted_at > AT_ONCE:
             end_now(number)
 
-    def lose_patience(self, number: int) -> None:
+    def end_impatiently(self, number: int) -> None:
         """End a program that has not ended in order, unless it keeps what it has found."""
         if not (number == signal.SIGINT and self.keeping):
             end_now(number)
@@ -98,7 +98,7 @@ def end_on_signals() -> None:
 
 
 def watch(reader: int) -> None:
-    """Notes every signal that Python has a handler for, even while that handler has to wait."""
+    """Note every signal that Python has a handler for, even while that handler has to wait."""
     while numbers := os.read(reader, 1):
         if numbers[0] in CODES:
             ending.note(numbers[0])
@@ -172,7 +172,7 @@ def keep_what_is_found() -> None:
 
 @contextmanager
 def ask_to_stop(then: str) -> Iterator[threading.Event]:
-    """An event that Ctrl-C within the block sets; ``then`` says on stderr what happens next.
+    """Yield an event that Ctrl-C within the block sets; ``then`` says on stderr what happens next.
 
     Another Ctrl-C ends the program, and so does a moment without any finding (see
     :func:`keep_what_is_found`).

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import CALLED, PartArgument, PartWords
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
@@ -23,12 +23,12 @@ from workhold.cli.toolkit_options import (
     SWEEP,
     TOOLKIT,
     ListWords,
-    heights_of_all,
-    peg_diameter_of,
-    query_of,
-    toolkits_to_try,
+    collect_carrier_heights,
+    find_peg_diameter,
+    list_toolkits_to_try,
+    make_query,
 )
-from workhold.cli.values import length_unit
+from workhold.cli.values import read_unit
 from workhold.errors import InputError
 from workhold.units import Unit
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 __all__ = ["explore"]
 
 
-VISES = option(
+VISES = make_option(
     SWEEP,
     "NAMES|FILES",
     "Vises and plates by name or from TOML files, such as plate-20mm,clamp-plate-20mm; all presets if "
@@ -52,7 +52,7 @@ VISES = option(
 class TableWords:
     """The options of where the table goes, as typed."""
 
-    out: str | None = option(None, "FILE", "Write the table to this file, as comma-separated values.")
+    out: str | None = make_option(None, "FILE", "Write the table to this file, as comma-separated values.")
     force: bool = FORCE
     json_: bool = JSON
 
@@ -80,7 +80,7 @@ class ExploreTask:
         return next((query.rank_by for _, query in self.queries if not isinstance(query, InputError)), ())
 
 
-@spread
+@spread_option_groups
 def explore(
     part: PartArgument,
     *,
@@ -114,20 +114,25 @@ def parse(
     reading: PartWords,
 ) -> ExploreTask:
     """Read what was typed and the part, and make the query of each toolkit."""
-    shown = length_unit(reading.unit)
-    toolkits = toolkits_to_try(vise, toolkit, varied, shown)
-    asked = words.asked(shown, machined.program is not None, machined.has_forces)
+    shown = read_unit(reading.unit)
+    toolkits = list_toolkits_to_try(vise, toolkit, varied, shown)
+    asked = words.read_arguments(shown, machined.program is not None, machined.has_forces)
     if written.out is not None:
         named = (name for names in vise or () for name in names.split(","))
         refuse_output(written.out, (part, words.loads, *machined.files, *named), written.force)
     # Pegs of each diameter reach as high as they must beside a solid, and the outline is what those meet.
     is_solid = reading.peg_height is None and Path(part).suffix.lower() in SOLIDS
-    diameters = [peg_diameter_of(one) if is_solid else None for one in toolkits]
-    loaded = read_for(diameters, part, heights_of_all(toolkits), machined.reading(part, reading))
+    diameters = [find_peg_diameter(one) if is_solid else None for one in toolkits]
+    loaded = read_for(
+        diameters, part, collect_carrier_heights(toolkits), machined.adapt_part_options(part, reading)
+    )
     refuse_unknown_faces(asked["restrictions"].avoid, loaded.values())
-    further = {one: machined.asked(shown, reading.peg_height, each.workpiece) for one, each in loaded.items()}
+    further = {
+        one: machined.read_query_arguments(shown, reading.peg_height, each.workpiece)
+        for one, each in loaded.items()
+    }
     queries = [
-        (one.name, query_of(loaded[diameter].workpiece, one, asked | further[diameter]))
+        (one.name, make_query(loaded[diameter].workpiece, one, asked | further[diameter]))
         for one, diameter in zip(toolkits, diameters, strict=True)
     ]
     return ExploreTask(list(loaded.values()), queries, written, shown)
@@ -173,7 +178,7 @@ def ask(asked: ExploreTask) -> list[Explored]:
 
 def report(asked: ExploreTask, found: list[Explored]) -> None:
     """Print the table and the first choice, and write the file."""
-    from workhold.files.atomic import text_file
+    from workhold.files.atomic import write_text_file
     from workhold.files.toolkit_file import is_sold
     from workhold.search.design import first_choice
 
@@ -182,13 +187,13 @@ def report(asked: ExploreTask, found: list[Explored]) -> None:
     if not asked.written.json_:
         print_explored(asked, found, types, first)
     if out is not None:
-        with text_file(Path(out)) as stream:
-            stream.write(table_text(found, types))
+        with write_text_file(Path(out)) as stream:
+            stream.write(format_csv_table(found, types))
     if asked.written.json_:
-        from workhold.presenting.data import explored_data
+        from workhold.presenting.data import describe_explored
 
         choice = {"ranking": list(asked.ranking), "first_choice": None if first is None else first.name}
-        print_json(toolkits=explored_data(found), **choice, written=[] if out is None else [out])
+        print_json(toolkits=describe_explored(found), **choice, written=[] if out is None else [out])
     elif out is not None:
         print_tables(f"Written to {out}.")
     if len(found) < len(asked.queries):
@@ -200,41 +205,44 @@ def report(asked: ExploreTask, found: list[Explored]) -> None:
 FIGURES_KEPT = 3
 
 
-def figures_known(item: Explored, query: tuple[str, Query | InputError]) -> dict[str, float]:
-    """The figures of a toolkit's first fixture, with an infinite edge distance where there is no edge."""
-    from workhold.presenting.figure_words import edgeless, no_edge
+def list_known_figures(item: Explored, query: tuple[str, Query | InputError]) -> dict[str, float]:
+    """Return the figures of a toolkit's first fixture, with an infinite edge distance where there is no edge."""
+    from workhold.presenting.figure_words import find_edgeless_distance, mark_edgeless
 
     asked = query[1]
     if isinstance(asked, InputError):
         return {}
-    return edgeless(item.figures, no_edge(asked.workpiece, asked.toolkit))
+    return mark_edgeless(item.figures, find_edgeless_distance(asked.workpiece, asked.toolkit))
 
 
 def print_explored(
     asked: ExploreTask, found: list[Explored], types: list[str], best: Explored | None
 ) -> None:
     """Print the table and say which toolkit is best."""
-    from workhold.cli.tables import slides_always
+    from workhold.cli.tables import explain_sliding_part
     from workhold.files.toolkit_file import is_sold
     from workhold.model.jaw_hold import HOLD_FIGURES
     from workhold.model.quality import FIGURES, LOCATION_ERROR, PROGRAM_FIGURE
-    from workhold.presenting.figure_words import figure_text, figure_words, heading
+    from workhold.presenting.figure_words import format_figure, format_figure_number, make_heading
 
     unit, ranking = asked.unit, asked.ranking
-    known = [figures_known(*each) for each in zip(found, asked.queries, strict=False)]
+    known = [list_known_figures(*each) for each in zip(found, asked.queries, strict=False)]
     keys = dict.fromkeys([FIGURES[LOCATION_ERROR].key, *ranking])
     figures = [
         figure for key in keys for figure in (*FIGURES, PROGRAM_FIGURE, *HOLD_FIGURES) if figure.key == key
     ]
     # What is known of all, then what there may be no room for: later figures, and of which types the fixtures
     # are.
-    headings = [*(f">{heading(figure, unit)}" for figure in figures), *(f">type {name}" for name in types)]
+    headings = [
+        *(f">{make_heading(figure, unit)}" for figure in figures),
+        *(f">type {name}" for name in types),
+    ]
     table = Table(("toolkit", ">fixtures", *headings), spare=max(len(headings) - FIGURES_KEPT, 0))
     for item, own in zip(found, known, strict=True):
         if own and not item.fit:
             table.red.add(len(table.rows))
         counts = ("-" if item.about is not None else f"{item.found.get(name, 0):,}" for name in types)
-        values = (figure_text(f, own[f.key], unit) if f.key in own else "-" for f in figures)
+        values = (format_figure_number(f, own[f.key], unit) if f.key in own else "-" for f in figures)
         about = "" if item.about is None else "~"
         table.add_row(item.name, f"{about}{item.fixtures:,}", *values, *counts)
     print_tables(table)
@@ -249,17 +257,17 @@ def print_explored(
         own = known[found.index(best)]
         shown = [f for f in (*figures[1:], figures[0]) if f.key in own]
         shown = shown or [f for f in HOLD_FIGURES if f.key in own]
-        words = ", ".join(f"{f.words} {figure_words(f, own[f.key], unit)}" for f in shown)
+        words = ", ".join(f"{f.words} {format_figure(f, own[f.key], unit)}" for f in shown)
         unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
         over = f"It holds the part over {best.held:.0%} of its length."
         print_tables(f"First choice: {best.name}; its first fixture has {words}. {over}{unsold}")
         return
-    sliding = [slides_always(one.workpiece, one.heights) for one in asked.loaded]
+    sliding = [explain_sliding_part(one.workpiece, one.heights) for one in asked.loaded]
     if all(sliding):
         print_tables(*sliding[0])
 
 
-def table_text(found: list[Explored], types: list[str]) -> str:
+def format_csv_table(found: list[Explored], types: list[str]) -> str:
     """Format the table as comma-separated values; lengths in mm, forces in N."""
     from workhold.model.quality import FIGURES
 

@@ -14,23 +14,23 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import flag, option, print_remark, spread
+from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.jobs import asked_of, jobs_of
+from workhold.cli.jobs import list_family_parts, make_family_queries
 from workhold.cli.options import PartWords
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output
 from workhold.cli.progress import search_progress
 from workhold.cli.search_options import QueryWords
-from workhold.cli.table import Table, plural, print_tables
+from workhold.cli.table import Table, format_count, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import (
-    choice,
-    length_unit,
+    choose_printed_unit,
     number,
-    optional_count,
-    picture_ending,
-    positive_number,
-    printed_unit,
+    read_choice,
+    read_optional_count,
+    read_picture_ending,
+    read_positive_number,
+    read_unit,
 )
 from workhold.errors import InputError
 
@@ -63,55 +63,55 @@ PartsArgument = Annotated[
 class FamilyWords:
     """The options of the set-ups that are sought, as typed."""
 
-    max_loss: str | None = option(
+    max_loss: str | None = make_option(
         FAMILY,
         "LOSS",
         "Accept no larger loss than this, such as 1.25; the plan then has the fewest set-ups.",
     )
-    setups: str | None = option(
+    setups: str | None = make_option(
         FAMILY, "K", "The plan has at most K set-ups, and the least loss that so few allow."
     )
-    limit: list[str] | None = option(
+    limit: list[str] | None = make_option(
         FAMILY,
         "FIGURE=VALUE",
         "Use no fixture with a worse figure than this, such as location-error=0.05 (mm, N or "
         "degrees). May be repeated.",
     )
-    unfit: bool = flag(FAMILY, "Also use fixtures that no workshop can use.", "--unfit")
-    both_sides: bool = flag(
+    unfit: bool = make_flag(FAMILY, "Also use fixtures that no workshop can use.", "--unfit")
+    both_sides: bool = make_flag(
         FAMILY, "Also hold every part turned over, for the second operation.", "--both-sides"
     )
-    zero: str | None = option(
+    zero: str | None = make_option(
         FAMILY,
         "POINT",
         "The parts' zero: corner (lower left, as drawn), centre, hole N, or X,Y of the drawing. "
         "If not given, the origin of the drawing if that lies on the part, else the corner.",
     )
-    same_zero: bool = flag(
+    same_zero: bool = make_flag(
         FAMILY, "All parts of a set-up have their zero at the same place and the same turn.", "--same-zero"
     )
-    time_limit: str = option(
+    time_limit: str = make_option(
         FAMILY,
         "SECONDS",
         "Longest time to prove that no fewer set-ups do; then the results so far are reported.",
         default=SECONDS,
     )
-    type_: str = option(
+    type_: str = make_option(
         FAMILY, "I|II|both", "For a vise: the arrangements of pegs to use.", "--type", default=EVERY_TYPE
     )
-    threads: str | None = option(FAMILY, "N", "Threads to use; all processors if not given.")
+    threads: str | None = make_option(FAMILY, "N", "Threads to use; all processors if not given.")
 
     @property
     def ask_for_plan(self) -> bool:
         return self.setups is not None or self.max_loss is not None
 
-    def asked(self) -> dict[str, Any]:
-        """Keyword arguments of ``family.family.family_of``."""
+    def read_arguments(self) -> dict[str, Any]:
+        """Return keyword arguments of ``family.family.make_family``."""
         return {
-            "most_loss": None if self.max_loss is None else loss_of(self.max_loss),
-            "seconds": positive_number("--time-limit", self.time_limit),
-            "threads": optional_count("--threads", self.threads),
-            "thresholds": [threshold_of(text) for text in self.limit or ()],
+            "most_loss": None if self.max_loss is None else read_largest_loss(self.max_loss),
+            "seconds": read_positive_number("--time-limit", self.time_limit),
+            "threads": read_optional_count("--threads", self.threads),
+            "thresholds": [read_threshold(text) for text in self.limit or ()],
             "unfit": self.unfit,
             "same_zero": self.same_zero,
         }
@@ -121,9 +121,11 @@ class FamilyWords:
 class FamilyOutputWords:
     """The options of where curve and plans go, as typed."""
 
-    out: str | None = option(OUTPUT, "FILE", "Write curve and plans to this JSON file.")
-    draw: str | None = option(OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png.")
-    sheets: str | None = option(
+    out: str | None = make_option(OUTPUT, "FILE", "Write curve and plans to this JSON file.")
+    draw: str | None = make_option(
+        OUTPUT, "FILE", "Draw the curve into this file; its name ends in .svg or .png."
+    )
+    sheets: str | None = make_option(
         OUTPUT,
         "FILE",
         "Write the sheets of the plan, one for each set-up, to this file; its name ends in .pdf, .svg or "
@@ -135,7 +137,7 @@ class FamilyOutputWords:
     def refuse(self, inputs: Sequence[str | Path | None], has_plan: bool) -> None:
         """Refuse, before anything is searched, what cannot be written."""
         if self.draw is not None:
-            picture_ending(Path(self.draw))
+            read_picture_ending(Path(self.draw))
         if self.sheets is not None and Path(self.sheets).suffix.lower() not in SHEET_ENDINGS:
             raise InputError(
                 f"--sheets {self.sheets} names no kind of sheet: let the name end in .pdf, .svg or .png."
@@ -157,7 +159,7 @@ class FamilyTask:
 
     Parameters
     ----------
-    rules : keyword arguments of ``family.family.family_of``.
+    rules : keyword arguments of ``family.family.make_family``.
     setups : the most of the plan; None for as many as the largest loss takes.
     has_plan : whether a plan is asked for.
     unit : of lengths shown.
@@ -181,7 +183,7 @@ class FamilyAnswer:
     spent: str
 
 
-@spread
+@spread_option_groups
 def family(
     parts: PartsArgument,
     *,
@@ -213,23 +215,25 @@ def parse(
     reading: PartWords,
 ) -> FamilyTask:
     """Read what was typed, and the parts."""
-    shown = length_unit(reading.unit)
-    setups = optional_count("--setups", planned.setups)
-    rules = planned.asked()
-    toolkit, tolerance = held_in.asked(shown)
-    words.asked(shown)
-    type_ = choice("--type", planned.type_, (*toolkit.types, EVERY_TYPE))
+    shown = read_unit(reading.unit)
+    setups = read_optional_count("--setups", planned.setups)
+    rules = planned.read_arguments()
+    toolkit, tolerance = held_in.read_toolkit(shown)
+    words.read_arguments(shown)
+    type_ = read_choice("--type", planned.type_, (*toolkit.types, EVERY_TYPE))
     types = None if type_ == EVERY_TYPE else type_
     from workhold.family.solver import load_solver
 
     load_solver()
-    jobs = jobs_of(parts, words, reading)
+    jobs = list_family_parts(parts, words, reading)
     files = [name for job in jobs for name in (job.listed.path, job.words.loads)]
     written.refuse((*parts, *files, held_in.vise, held_in.toolkit), planned.ask_for_plan)
-    members, left_out = asked_of(jobs, toolkit, tolerance, types, planned.zero, both_sides=planned.both_sides)
+    members, left_out = make_family_queries(
+        jobs, toolkit, tolerance, types, planned.zero, both_sides=planned.both_sides
+    )
     if not members:
         raise InputError(f"none of the parts can be used: {left_out[0].name}: {left_out[0].reason}")
-    unit = printed_unit(reading.unit, toolkit)
+    unit = choose_printed_unit(reading.unit, toolkit)
     return FamilyTask(members, left_out, rules, setups, planned.ask_for_plan, written, unit)
 
 
@@ -242,10 +246,10 @@ def ask(asked: FamilyTask) -> FamilyAnswer:
         compiled = ", compiling on this first run included" if compile_kernels(cancel) else ""
     if cancel.is_set():
         raise typer.Exit(INTERRUPTED)
-    from workhold.family.family import family_of
+    from workhold.family.family import make_family
 
     with search_progress(keeps=False) as progress:
-        found = family_of(asked.members, left_out=asked.left_out, progress=progress, **asked.rules)
+        found = make_family(asked.members, left_out=asked.left_out, progress=progress, **asked.rules)
     plan = found.plan(asked.setups) if found.members and asked.has_plan else None
     return FamilyAnswer(found, plan, f"{perf_counter() - start:.1f} s{compiled}")
 
@@ -256,9 +260,9 @@ def report(asked: FamilyTask, answer: FamilyAnswer) -> None:
     if asked.written.json_:
         from json import loads
 
-        from workhold.family.family import family_text
+        from workhold.family.family import write_family_json
 
-        print_json(**loads(family_text(answer.found)), written=written)
+        print_json(**loads(write_family_json(answer.found)), written=written)
         return
     print_family(answer, asked.unit)
     if written:
@@ -270,9 +274,9 @@ def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
 
     found, plan, names, contents = answer.found, answer.plan, asked.written, dict[str, bytes]()
     if names.out is not None:
-        from workhold.family.family import family_text
+        from workhold.family.family import write_family_json
 
-        contents[names.out] = family_text(found).encode("utf-8")
+        contents[names.out] = write_family_json(found).encode("utf-8")
     if names.draw is not None and found.members:
         from workhold.drawing.render import render
         from workhold.family.pages import draw_curve
@@ -281,11 +285,11 @@ def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
         contents[names.draw] = render(curve, Path(names.draw).suffix)
     if names.sheets is not None and plan is not None:
         from workhold.family.pages import draw_setups
-        from workhold.presenting.papers import pages_bytes
+        from workhold.presenting.papers import make_pages_file
 
         day = date.today()
         pages = draw_setups(plan, found.figure, day, asked.unit)
-        contents[names.sheets] = pages_bytes(pages, Path(names.sheets).suffix.lower(), day)
+        contents[names.sheets] = make_pages_file(pages, Path(names.sheets).suffix.lower(), day)
     for name, content in contents.items():
         write_bytes(name, content)
     return list(contents)
@@ -299,14 +303,14 @@ def print_family(answer: FamilyAnswer, unit: Unit) -> None:
     if not found.members:
         print_tables(f"No pattern holds any of the parts {toolkit.wording.inside}; {spent}.")
         return
-    from workhold.family.members import loss_figure_words
+    from workhold.family.members import describe_loss_figure
 
     assert found.table is not None
-    print_tables(curve_table(found, unit))
+    print_tables(tabulate_family_curve(found, unit))
     sentences = [
-        f"{plural(len(found.members), 'part')}, {plural(len(found.table.words), 'pattern')} that hold at "
+        f"{format_count(len(found.members), 'part')}, {format_count(len(found.table.words), 'pattern')} that hold at "
         f"least one of them; {spent}.",
-        f"The loss is the {loss_figure_words(found.figure)} divided by the best that each part "
+        f"The loss is the {describe_loss_figure(found.figure)} divided by the best that each part "
         f"has {toolkit.wording.inside}.",
     ]
     if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
@@ -326,7 +330,7 @@ def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
         holes = ", ".join(peg.hole for peg in setup.standing.fixture.placed)
         heading = f"Set-up {count} of {len(plan.setups)}: {holes}"
         place = "" if count == 1 else f" ({setup.moved} to place, the others stay)"
-        print_tables("", f"{heading}{place}", setup_table(setup, found, unit))
+        print_tables("", f"{heading}{place}", tabulate_setup(setup, found, unit))
         for one in setup.holdings:
             if not one.in_place:
                 holes = ", ".join(peg.hole for peg in one.fixture.pegs)
@@ -340,29 +344,31 @@ def print_plan(plan: Plan, found: Family, unit: Unit) -> None:
         )
 
 
-def curve_table(found: Family, unit: Unit) -> Table:
-    from workhold.family.members import loss_text
-    from workhold.presenting.figure_words import figure_text, heading
+def tabulate_family_curve(found: Family, unit: Unit) -> Table:
+    from workhold.family.members import format_loss
+    from workhold.presenting.figure_words import format_figure_number, make_heading
 
-    table = Table((">set-ups", ">worst loss", ">pegs moved", f">{heading(found.figure, unit)}", "worst part"))
+    table = Table(
+        (">set-ups", ">worst loss", ">pegs moved", f">{make_heading(found.figure, unit)}", "worst part")
+    )
     for plan in found.plans:
         point = plan.point
         worst = max((one for setup in plan.setups for one in setup.holdings), key=lambda one: one.loss)
         count = f"{point.setups}" if point.at_least == point.setups else f"{point.at_least} to {point.setups}"
         table.add_row(
             count,
-            loss_text(point.loss),
+            format_loss(point.loss),
             str(plan.moved),
-            figure_text(found.figure, worst.figure, unit),
+            format_figure_number(found.figure, worst.figure, unit),
             worst.member.name,
         )
     return table
 
 
-def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
-    from workhold.family.members import loss_text
+def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
+    from workhold.family.members import format_loss
     from workhold.model.setup import list_length_settings
-    from workhold.presenting.figure_words import figure_text, heading
+    from workhold.presenting.figure_words import format_figure_number, make_heading
 
     settings = list_length_settings(setup.standing.fixture, found.toolkit)
     names = [f">{setting.short} {unit.abbreviation}" for setting in settings]
@@ -375,7 +381,7 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
         *names,
         ">loss",
     )
-    table = Table((*columns, f">{heading(found.figure, unit)}"), spare=1)
+    table = Table((*columns, f">{make_heading(found.figure, unit)}"), spare=1)
     for one in setup.holdings:
         fixture = one.fixture
         pose = fixture.pose
@@ -387,13 +393,13 @@ def setup_table(setup: SetUp, found: Family, unit: Unit) -> Table:
             unit.number(pose.x),
             unit.number(pose.y),
             *lengths,
-            loss_text(one.loss),
-            figure_text(found.figure, one.figure, unit),
+            format_loss(one.loss),
+            format_figure_number(found.figure, one.figure, unit),
         )
     return table
 
 
-def loss_of(text: str) -> float:
+def read_largest_loss(text: str) -> float:
     """Read a largest loss; refuse what is no number from 1 upward."""
     value = number(text)
     if not (isfinite(value) and value >= 1.0):
@@ -403,13 +409,13 @@ def loss_of(text: str) -> float:
     return value
 
 
-def threshold_of(text: str) -> Threshold:
+def read_threshold(text: str) -> Threshold:
     """Read a threshold from words such as ``location-error=0.05``."""
-    from workhold.family.members import threshold
+    from workhold.family.members import make_threshold
 
     name, equals, value = text.partition("=")
     if not equals or not isfinite(number(value)):
         raise InputError(
             f"--limit {text!r} is no limit: give a figure and its value, such as location-error=0.05."
         )
-    return threshold(name, number(value))
+    return make_threshold(name, number(value))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from workhold.cli.table import Table
-from workhold.presenting.figure_words import figure_text, rounded, short_heading
+from workhold.presenting.figure_words import format_figure_number, format_rounded, make_short_heading
 from workhold.units import Unit
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
 
-__all__ = ["first_hold_sentence", "hold_fixture_tables", "hold_table"]
+__all__ = ["explain_first_hold", "hold_fixture_tables", "hold_table"]
 
 # Figures that a table has where all else fits.
 SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "contact_area")
@@ -35,7 +35,7 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
         *(("stop",) if has_stop else ()),
         f">opening {short}",
         ">angle deg",
-        *(f">{short_heading(figure, unit)}" for figure in figures),
+        *(f">{make_short_heading(figure, unit)}" for figure in figures),
     )
     table = Table(columns, spare=len(figures) - 1)
     for index in entries.index[:count].tolist():
@@ -50,16 +50,18 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
             unit.number(hold.parallels, 1) if hold.parallels else "bed",
             *((hold.stop or "",) if has_stop else ()),
             unit.number(hold.opening),
-            rounded(fixture.pose.written_deg, 3),
+            format_rounded(fixture.pose.written_deg, 3),
             *(
-                figure_text(figure, hold.figures[figure.key], unit) if figure.key in hold.figures else "-"
+                format_figure_number(figure, hold.figures[figure.key], unit)
+                if figure.key in hold.figures
+                else "-"
                 for figure in figures
             ),
         )
     return table
 
 
-def first_hold_sentence(result: Result, unit: Unit) -> str:
+def explain_first_hold(result: Result, unit: Unit) -> str:
     """Say why the first hold stands first, and with which friction."""
     from workhold.model.hold_words import describe_coefficients, hold_reasons
 
@@ -84,7 +86,7 @@ def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
     if hold.clamp_needed_each:
         needs = Table((">load", "name", f">jaw force needed {unit.force}"))
         for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
-            text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
+            text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
             needs.add_row(str(number), load.name, text)
         tables.append(needs)
     return (*tables, *write_warnings(hold))

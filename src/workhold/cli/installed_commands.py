@@ -22,11 +22,11 @@ from attrs import asdict, frozen
 
 from workhold.cli.outputs import JSON, print_json
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import choice
+from workhold.cli.values import read_choice
 from workhold.errors import InputError
 from workhold.version import __version__
 
-__all__ = ["SCHEMAS", "doctor", "schema", "schema_of"]
+__all__ = ["SCHEMAS", "doctor", "schema", "make_schema"]
 
 # The extras, each with what it is good for.
 USES = {
@@ -76,28 +76,28 @@ def doctor(json_: bool = JSON) -> None:
 
     Example: workhold doctor
     """
-    own = kernels()
-    findings = [own, *extras(own.state == BUILT)]
+    own = find_kernels()
+    findings = [own, *find_extras(own.state == BUILT)]
     machine = f"Python {platform.python_version()} on {platform.system()} {platform.machine()}"
     if json_:
         print_json(
             version=__version__, python=sys.executable, machine=machine, findings=list(map(asdict, findings))
         )
         return
-    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", table(findings))
+    print_tables(f"workhold {__version__}, {machine}: {sys.executable}", "", tabulate_findings(findings))
     remedies = [f"  {found.what}: {found.remedy}" for found in findings if found.remedy]
     if remedies:
         print_tables("", "To add what is missing:", *remedies)
 
 
-def table(findings: list[InstallationRow]) -> Table:
+def tabulate_findings(findings: list[InstallationRow]) -> Table:
     """Return the findings, one line each; what is missing is red on a terminal."""
     rows: list[tuple[str, ...]] = [(found.what, found.state, found.use) for found in findings]
     missing = {number for number, found in enumerate(findings) if found.remedy}
     return Table(("part", "state", "what it does"), rows, missing)
 
 
-def kernels() -> InstallationRow:
+def find_kernels() -> InstallationRow:
     """Return where the compiled arithmetic comes from: the package, or numba and its cache on disk."""
     use = "The arithmetic of every search."
     from workhold.kernels.base.libraries import KERNELS, ROOMS, cache_folder, find_in, is_built
@@ -116,13 +116,13 @@ def kernels() -> InstallationRow:
     return InstallationRow("kernels", f"{state}, kept in {folder}", use)
 
 
-def extras(is_built: bool) -> Iterator[InstallationRow]:
+def find_extras(is_built: bool) -> Iterator[InstallationRow]:
     """Yield what was found of each extra, in the order of :data:`USES`.
 
     ``is_built`` says whether the package has compiled kernels for this machine, so that nothing is compiled
     here.
     """
-    asked = requirements()
+    asked = list_requirements()
     for extra, use in USES.items():
         if extra == "numba" and is_built:
             yield InstallationRow(extra, "not needed here", use)
@@ -136,14 +136,14 @@ def extras(is_built: bool) -> Iterator[InstallationRow]:
             if not is_usable
         ]
         remedy = f"pip install {' '.join(wanted)}" if lacking else None
-        if extra == "step" and found and (fault := step_fault()):
+        if extra == "step" and found and (fault := find_step_fault()):
             lacking, remedy = lacking or [f"{found[0][0]} does not load"], fault
         states = lacking or [state for state, _ in found]
         unknown = "not known, because this copy was not installed as a package"
         yield InstallationRow(extra, ", ".join(states) or unknown, use, remedy)
 
 
-def requirements() -> dict[str, list[tuple[str, str]]]:
+def list_requirements() -> dict[str, list[tuple[str, str]]]:
     """Return what each extra asks for, with least versions; empty for a copy that was not installed."""
     try:
         lines = metadata.requires("workhold") or []
@@ -165,21 +165,21 @@ def state_of(name: str, least: str) -> tuple[str, bool]:
     except metadata.PackageNotFoundError:
         # Another distribution may bring the same module.
         return f"{name} of another package", True
-    if numbers(version) < numbers(least):
+    if split_version(version) < split_version(least):
         return f"{name} {version}, older than {least}", False
     return f"{name} {version}", True
 
 
-def numbers(version: str) -> list[int]:
+def split_version(version: str) -> list[int]:
     """Return the numbers of a version, to compare by.
 
-    >>> numbers("8.0.1rc2") < numbers("8.1")
+    >>> split_version("8.0.1rc2") < split_version("8.1")
     True
     """
     return [int(number) for number in re.findall(r"\d+", version)]
 
 
-def step_fault() -> str | None:
+def find_step_fault() -> str | None:
     """Return what keeps STEP files from being read, with its remedy: the system may lack a library."""
     from workhold.files.step.library import load_step_library
 
@@ -190,16 +190,16 @@ def step_fault() -> str | None:
     return None
 
 
-def toolkit_schema() -> dict[str, Any]:
+def make_toolkit_schema() -> dict[str, Any]:
     """Return the schema of a toolkit's TOML file: one of those of the kinds."""
     from pydantic import TypeAdapter
 
-    from workhold.files.input_forms import FORMS, one_of
-    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
+    from workhold.files.input_forms import FORMS, join_forms
+    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, find_table, resolve_kind
 
-    schema = TypeAdapter(one_of(FORMS)).json_schema()
+    schema = TypeAdapter(join_forms(FORMS)).json_schema()
     for noun, form in FORMS.items():
-        names = [name for name in (*KINDS, *ALIASES) if table_of(kind_of(name)[0]).noun == noun]
+        names = [name for name in (*KINDS, *ALIASES) if find_table(resolve_kind(name)[0]).noun == noun]
         schema["$defs"][form.__name__]["properties"]["kind"] = {"enum": names, "title": "Kind"}
         if USUAL not in names:
             schema["$defs"][form.__name__]["required"].append("kind")
@@ -216,7 +216,7 @@ SCHEMAS = {
 }
 
 
-def schema_of(name: str) -> dict[str, Any]:
+def make_schema(name: str) -> dict[str, Any]:
     """Return the JSON Schema of a name.
 
     Forms of which a word in the file chooses one differ in all they say, so that a file must fit at least one
@@ -232,20 +232,20 @@ def schema_of(name: str) -> dict[str, Any]:
         "query": JobForm,
         "result": ResultFile,
     }
-    made = toolkit_schema() if name == "toolkit" else forms[name].model_json_schema()
+    made = make_toolkit_schema() if name == "toolkit" else forms[name].model_json_schema()
     return {
         "$schema": DIALECT,
-        **loosened(made),
+        **loosen_schema(made),
         "title": f"workhold {name}",
         "description": f"The shape of {SCHEMAS[name]}.",
     }
 
 
-def loosened(schema: Any) -> Any:
+def loosen_schema(schema: Any) -> Any:
     """Replace "exactly one of these" by "any of these" throughout a schema."""
     if isinstance(schema, dict):
-        return {("anyOf" if key == "oneOf" else key): loosened(value) for key, value in schema.items()}
-    return [loosened(one) for one in schema] if isinstance(schema, list) else schema
+        return {("anyOf" if key == "oneOf" else key): loosen_schema(value) for key, value in schema.items()}
+    return [loosen_schema(one) for one in schema] if isinstance(schema, list) else schema
 
 
 def schema(
@@ -261,7 +261,7 @@ def schema(
     Example: workhold schema result > result.schema.json
     """
     if name is not None:
-        text = json.dumps(schema_of(choice("the schema", name, tuple(SCHEMAS))), indent=2)
+        text = json.dumps(make_schema(read_choice("the schema", name, tuple(SCHEMAS))), indent=2)
         sys.stdout.write(text + "\n")
         sys.stdout.flush()
     elif json_:

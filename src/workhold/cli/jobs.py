@@ -27,8 +27,8 @@ from attrs import AttrsInstance, evolve, fields, fields_dict, frozen, resolve_ty
 from workhold.cli.commands import print_remark
 from workhold.cli.options import CALLED, PartWords
 from workhold.cli.program_options import ProgramWords
-from workhold.cli.search_options import QueryWords, SeatingWords, with_fit_of
-from workhold.cli.values import length_unit
+from workhold.cli.search_options import QueryWords, SeatingWords, add_dowel_fit
+from workhold.cli.values import read_unit
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Tolerance
 
-__all__ = ["JOB_ENDINGS", "asked_of", "jobs_of", "read_jobs"]
+__all__ = ["JOB_ENDINGS", "make_family_queries", "list_family_parts", "read_jobs"]
 
 JOB_ENDINGS = (".csv", ".toml")
 PART, TOOLKIT = "part", "toolkit"
@@ -70,11 +70,11 @@ class JobWords:
     toolkits: list[str] | None
     options: Mapping[str, Any]
 
-    def over(self, typed: Words) -> Words:
+    def replace_options(self, typed: Words) -> Words:
         """Return the options of a group as typed, with those of the file in their place."""
-        return evolve(typed, **self.options_of(type(typed)))
+        return evolve(typed, **self.make_options(type(typed)))
 
-    def options_of(self, group: type[AttrsInstance]) -> dict[str, Any]:
+    def make_options(self, group: type[AttrsInstance]) -> dict[str, Any]:
         return {name: self.options[name] for name in fields_dict(group) if name in self.options}
 
 
@@ -85,24 +85,24 @@ def read_jobs(path: Path) -> list[JobWords]:
 
     try:
         if path.suffix.lower() == ".toml":
-            entries = list(toml_entries(read_text(path, LIMITS["jobs"])))
+            entries = list(read_toml_entries(read_text(path, LIMITS["jobs"])))
         else:
-            entries = list(csv_entries(read_text(path, LIMITS["jobs"], SAVED)))
+            entries = list(read_csv_entries(read_text(path, LIMITS["jobs"], SAVED)))
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     if not entries:
         raise InputError(
             f"{path} has no jobs: write a table [[job]], or a row below the names of columns, for each."
         )
-    return [job_of(entry, f"{path}: job {number}", path.parent) for number, entry in enumerate(entries, 1)]
+    return [make_job(entry, f"{path}: job {number}", path.parent) for number, entry in enumerate(entries, 1)]
 
 
-def toml_entries(text: str) -> Iterator[dict[str, Any]]:
+def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import MOST_COLUMNS
-    from workhold.files.text import toml_table
+    from workhold.files.text import parse_toml
 
-    content = toml_table(text)
+    content = parse_toml(text)
     jobs = content.pop("job", [])
     if not isinstance(jobs, list) or not all(isinstance(job, dict) for job in jobs):
         raise InputError("its jobs are no tables: write [[job]] above each.")
@@ -117,58 +117,59 @@ def toml_entries(text: str) -> Iterator[dict[str, Any]]:
         yield content | job
 
 
-def csv_entries(text: str) -> Iterator[dict[str, Any]]:
+def read_csv_entries(text: str) -> Iterator[dict[str, Any]]:
     """Yield the cells of each row of a CSV file, without those in which nothing is given."""
     from workhold.files.budget import LIMITS, Budget
-    from workhold.files.tables import NOT_GIVEN, table_of
+    from workhold.files.tables import NOT_GIVEN, read_table
 
-    for row in table_of(text, Budget(LIMITS["jobs"], len(text))).rows():
+    for row in read_table(text, Budget(LIMITS["jobs"], len(text))).iterate_rows():
         cells = {key: cell for key, cell in row.cells.items() if key == PART or cell.lower() not in NOT_GIVEN}
-        yield {key: cell.split("|") if named(key) in LISTS else cell for key, cell in cells.items()}
+        yield {key: cell.split("|") if normalize_word(key) in LISTS else cell for key, cell in cells.items()}
 
 
-def named(key: str) -> str:
+def normalize_word(key: str) -> str:
     """Normalize the name of a word: ``jaw-force`` is ``jaw_force``."""
     return key.strip().lower().replace("-", "_").replace(" ", "_").replace("toolkits", TOOLKIT)
 
 
-def job_of(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
+def make_job(entry: Mapping[str, Any], place: str, folder: Path) -> JobWords:
     words: dict[str, Any] = {}
     for key, value in entry.items():
-        name = named(key)
+        name = normalize_word(key)
         if name not in KEYS:
             raise InputError(
                 f"{place} has an unknown word {key[:40]!r}: give {', '.join(KEYS[:-1])} or {KEYS[-1]}."
             )
         if KINDS.get(name) is bool:
-            words[name] = flag_of(value, f"{place}: {key}")
+            words[name] = read_flag(value, f"{place}: {key}")
             continue
         values = [
-            text_of(item, f"{place}: {key}") for item in (value if isinstance(value, list) else [value])
+            format_as_typed(item, f"{place}: {key}")
+            for item in (value if isinstance(value, list) else [value])
         ]
         if name in FILES:
-            values = [beside(folder, item) for item in values]
+            values = [find_beside_jobs_file(folder, item) for item in values]
         words[name] = values if name in LISTS else ",".join(values)
     if PART not in words:
         raise InputError(f"{place} has no part: name a file, a folder or a built-in part.")
     return JobWords(place, words.pop(PART), words.pop(TOOLKIT, None), words)
 
 
-def flag_of(value: Any, place: str) -> bool:
+def read_flag(value: Any, place: str) -> bool:
     flag = value if isinstance(value, bool) else TRUTHS.get(str(value).lower())
     if flag is None:
         raise InputError(f"{place} is neither true nor false: write one of {', '.join(TRUTHS)}.")
     return flag
 
 
-def text_of(value: Any, place: str) -> str:
+def format_as_typed(value: Any, place: str) -> str:
     """Return a value as it would be typed; refuse what nobody can type."""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise InputError(f"{place} is neither text nor a number: write it as on the command line, in quotes.")
     return value if isinstance(value, str) else f"{value!r}" if isinstance(value, float) else str(value)
 
 
-def beside(folder: Path, name: str) -> str:
+def find_beside_jobs_file(folder: Path, name: str) -> str:
     """Return the path of a file beside the file of jobs, if there is one; else the name as it is."""
     try:
         return str(folder / name) if name and (folder / name).exists() else name
@@ -186,12 +187,12 @@ class FamilyPart:
     reading: PartWords
 
 
-def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[FamilyPart]:
+def list_family_parts(parts: list[str], words: QueryWords, reading: PartWords) -> list[FamilyPart]:
     """List the parts of the command line and of files of jobs, each under a name of its own."""
-    from workhold.files.part_list import part_list
+    from workhold.files.part_list import list_parts
 
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
-    found = [(one, words, reading) for one in part_list(plain)] if plain else []
+    found = [(one, words, reading) for one in list_parts(plain)] if plain else []
     for name in parts:
         for job in [] if name in plain else read_jobs(Path(name)):
             if job.toolkits is not None:
@@ -199,17 +200,17 @@ def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Fam
                     f"{job.place} names a toolkit, but all parts of a family use the toolkit of the command "
                     "line: leave it out."
                 )
-            if job.options_of(ProgramWords):
+            if job.make_options(ProgramWords):
                 raise InputError(
                     f"{job.place} names a program, but a family of parts is planned without one: leave it out."
                 )
-            own_words, own_reading = job.over(words), job.over(reading)
+            own_words, own_reading = job.replace_options(words), job.replace_options(reading)
             try:
-                own_words.asked(length_unit(own_reading.unit))
-                found += [(one, own_words, own_reading) for one in part_list([job.part])]
+                own_words.read_arguments(read_unit(own_reading.unit))
+                found += [(one, own_words, own_reading) for one in list_parts([job.part])]
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
-    called = [called_by(one.name, [other.name for other, _, _ in found]) for one, _, _ in found]
+    called = [shorten_part_name(one.name, [other.name for other, _, _ in found]) for one, _, _ in found]
     times, jobs = Counter[str](), []
     for name, (one, own_words, own_reading) in zip(called, found, strict=True):
         times[name] += 1
@@ -219,17 +220,17 @@ def jobs_of(parts: list[str], words: QueryWords, reading: PartWords) -> list[Fam
     return jobs
 
 
-def called_by(name: str, names: list[str]) -> str:
-    """Names a part by its file alone, unless another path ends in the same file.
+def shorten_part_name(name: str, names: list[str]) -> str:
+    """Name a part by its file alone, unless another path ends in the same file.
 
-    >>> called_by("a/x.dxf", ["a/x.dxf", "b/y.dxf"]), called_by("a/x.dxf", ["a/x.dxf", "b/x.dxf"])
+    >>> shorten_part_name("a/x.dxf", ["a/x.dxf", "b/y.dxf"]), shorten_part_name("a/x.dxf", ["a/x.dxf", "b/x.dxf"])
     ('x.dxf', 'a/x.dxf')
     """
     short = Path(name).name
     return name if any(Path(other).name == short for other in names if other != name) else short
 
 
-def asked_of(
+def make_family_queries(
     jobs: list[FamilyPart],
     toolkit: Toolkit,
     tolerance: Tolerance | None,
@@ -238,7 +239,7 @@ def asked_of(
     *,
     both_sides: bool = False,
 ) -> tuple[list[Asked], list[LeftOut]]:
-    """Make the query of each part that can be read, and lists the parts that cannot.
+    """Make the query of each part that can be read, and list the parts that cannot.
 
     ``both_sides`` makes a second one of each part turned over; the file of a solid is read again for it.
     Refuses a zero that a part does not have.
@@ -257,7 +258,7 @@ def asked_of(
     members, left_out = [], []
     for job in jobs:
         options = {
-            **job.reading.options(),
+            **job.reading.to_read_arguments(),
             "heights": toolkit.heights,
             "peg_diameter": toolkit.peg_diameter,
         }
@@ -267,9 +268,9 @@ def asked_of(
             continue
         for remark in read.loaded.remarks:
             print_remark(f"{job.name}: {remark}")
-        unit = length_unit(job.reading.unit)
-        asked = job.words.asked(unit)
-        asked["tolerance"] = with_fit_of(asked["tolerance"], tolerance)
+        unit = read_unit(job.reading.unit)
+        asked = job.words.read_arguments(unit)
+        asked["tolerance"] = add_dowel_fit(asked["tolerance"], tolerance)
         asked["rank_by"] = asked["rank_by"] or (usual if toolkit.flat_jaws is None else None)
         workpiece = read.loaded.workpiece
         try:
@@ -286,11 +287,11 @@ def asked_of(
         if not both_sides:
             continue
         if workpiece.solid is None:
-            members.append(one.lying_as(None))
+            members.append(one.turn_over(None))
             continue
         read = read_listed(job.listed, **{**options, "axis": flip_up_axis(workpiece.solid.axis)})
         if read.loaded is None:
             left_out.append(LeftOut(f"{job.name}, {OTHER_SIDE}", str(path), read.refusal.rstrip(".")))
         else:
-            members.append(one.lying_as(read.loaded.workpiece))
+            members.append(one.turn_over(read.loaded.workpiece))
     return members, left_out

@@ -119,14 +119,14 @@ MODULES = {name: f"{name}_command" for name in COMMANDS} | {
 }
 
 
-def command_of(name: str) -> Callable[..., None]:
-    """Import the module of a command and returns its function."""
+def import_command(name: str) -> Callable[..., None]:
+    """Import the module of a command and return its function."""
     command: Callable[..., None] = getattr(import_module(f"workhold.cli.{MODULES[name]}"), name)
     return command
 
 
 @contextmanager
-def outcomes() -> Iterator[None]:
+def handle_exits() -> Iterator[None]:
     """Handle two outcomes that Typer would handle with words and a code of its own."""
     try:
         yield
@@ -150,12 +150,12 @@ class Workhold(PlainGroup):
         if cmd_name not in COMMANDS:
             return None
         alone = typer.Typer(add_completion=False, rich_markup_mode=None)
-        alone.command(cmd_name, cls=PlainCommand)(command_of(cmd_name))
+        alone.command(cmd_name, cls=PlainCommand)(import_command(cmd_name))
         return get_command(alone)
 
     def make_context(self, *args: Any, **extra: Any) -> Any:
         """Parse the arguments; a help that was asked for is shown here."""
-        with outcomes():
+        with handle_exits():
             return super().make_context(*args, **extra)
 
     def _main_shell_completion(self, ctx_args: Any, prog_name: str, complete_var: str | None = None) -> None:
@@ -169,7 +169,7 @@ class Workhold(PlainGroup):
     def invoke(self, ctx: Any) -> Any:
         """Run the command."""
         refuse_little_space(LEAST_SPACE, "workhold", "raise the limit")
-        with outcomes():
+        with handle_exits():
             return super().invoke(ctx)
 
     def main(
@@ -277,7 +277,7 @@ def say(message: str) -> None:
 
 
 def report_fault(error: Exception) -> None:
-    """Reports a mistake of the program, and keeps the traceback for the user's report."""
+    """Report a mistake of the program, and keep the traceback for the user's report."""
     import tempfile
     import traceback
 

@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.reading import ReadingQuestion
-from workhold.cli.commands import option, print_remark
-from workhold.cli.declared import one_word, options_of, read_words
-from workhold.cli.values import length_unit, usual_unit, whole_number
+from workhold.cli.commands import make_option, print_remark
+from workhold.cli.declared import make_option_attributes, make_word_attribute, read_words
+from workhold.cli.values import read_unit, read_usual_unit, read_whole_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -32,8 +32,8 @@ __all__ = [
     "PartWords",
     "RankArgument",
     "ResultArgument",
-    "asked_rank",
-    "result_with",
+    "read_rank",
+    "read_result_with_rank",
 ]
 
 ResultArgument = Annotated[
@@ -42,29 +42,29 @@ ResultArgument = Annotated[
 RankArgument = Annotated[str, typer.Argument(metavar="N", help="Rank of the fixture; 1 is the best.")]
 
 
-def asked_rank(text: str) -> int:
+def read_rank(text: str) -> int:
     """Read a rank, counted from 1."""
-    rank = whole_number("fixture", text)
+    rank = read_whole_number("fixture", text)
     if rank < 1:
         raise InputError(f"there is no fixture {rank}: fixtures are counted from 1, the best one.")
     return rank
 
 
-def result_with(path: str | Path, rank: int) -> Result:
+def read_result_with_rank(path: str | Path, rank: int) -> Result:
     """Read a result file for its fixture of a rank; refuse one that lists fewer."""
     from workhold.files.result.one_fixture import read_one
 
     return read_one(path, rank)
 
 
-OF_READING = declarations_of(ReadingQuestion)
+OF_READING = list_declarations(ReadingQuestion)
 # What the questions of a part's readers are called here.
 CALLED = {row.name: row.option for row in OF_READING} | {
     "unit": "--unit",
     "drawing_unit": "--drawing-unit",
     "heights": "the toolkit's own heights",
 }
-LENGTHS_UNIT = option(
+LENGTHS_UNIT = make_option(
     None,
     "UNIT",
     "Unit of the lengths that you type and see (mm, cm, m, inch), and of a drawing that does "
@@ -80,7 +80,7 @@ PartArgument = Annotated[
         help="The part: a DXF, SVG, JSON or STEP file, or a built-in name (see workhold parts).",
     ),
 ]
-SHOWN_UNIT = option(
+SHOWN_UNIT = make_option(
     None,
     "UNIT",
     "Unit of the lengths shown (mm, cm, m, inch); if not given, inch for holes a fraction of an inch apart, else mm.",
@@ -88,12 +88,12 @@ SHOWN_UNIT = option(
 )
 
 
-def at_terminal() -> bool:
+def is_at_terminal() -> bool:
     """Return whether a user at a terminal can be asked."""
     return sys.stdin.isatty() and sys.stderr.isatty()
 
 
-@frozen(these=options_of(OF_READING, layers={"unit": one_word(LENGTHS_UNIT)}))
+@frozen(these=make_option_attributes(OF_READING, layers={"unit": make_word_attribute(LENGTHS_UNIT)}))
 class PartWords:
     """The options of reading the part, as typed; None for those not given."""
 
@@ -102,14 +102,14 @@ class PartWords:
         drawing_unit: str | None
         peg_height: str | None
 
-    def options(self) -> dict[str, Any]:
+    def to_read_arguments(self) -> dict[str, Any]:
         """Make the keyword arguments of ``files.part.load.read_workpiece``."""
         from workhold.files.questions import number_or_name
 
         rows = [row for row in OF_READING if row.name != "unit"]
-        asked = read_words(rows, self, length_unit(self.unit)) | {"unit": self.drawing_unit}
+        asked = read_words(rows, self, read_unit(self.unit)) | {"unit": self.drawing_unit}
         asked["part_number"] = number_or_name(asked["part_number"])
-        return asked | {"usual_unit": self.unit or usual_unit(), "called": CALLED}
+        return asked | {"usual_unit": self.unit or read_usual_unit(), "called": CALLED}
 
     def load(
         self,
@@ -118,7 +118,7 @@ class PartWords:
         peg_diameter: float | None = None,
         said: Collection[str] = (),
     ) -> Loaded:
-        """Read a part and prints remarks about the drawing on stderr.
+        """Read a part and print remarks about the drawing on stderr.
 
         Parameters
         ----------
@@ -131,7 +131,7 @@ class PartWords:
         InputError
             When the part cannot be used.
         """
-        options = self.options()
+        options = self.to_read_arguments()
         from workhold.files.part.load import read_workpiece
         from workhold.files.questions import UnitAskedError
 
@@ -139,7 +139,7 @@ class PartWords:
         try:
             loaded = read()
         except UnitAskedError as question:
-            if not at_terminal():
+            if not is_at_terminal():
                 raise
             print_remark(str(question))
             pixels = "; px72, px90 or px96 for pixels" if "px72" in str(question) else ""

@@ -13,10 +13,10 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workhold.cli.commands import flag, option
+from workhold.cli.commands import make_flag, make_option
 from workhold.cli.ending import Interrupted, keep_what_is_found
 from workhold.cli.table import print_tables
-from workhold.cli.values import choice, picture_ending
+from workhold.cli.values import read_choice, read_picture_ending
 from workhold.errors import InputError
 from workhold.files import replacing
 
@@ -29,8 +29,8 @@ __all__ = [
     "JSON",
     "OUTPUT",
     "STANDARD_OUTPUT",
-    "asked_picture",
-    "output_form",
+    "read_picture_path",
+    "choose_output_form",
     "print_json",
     "print_written",
     "refuse_both",
@@ -42,7 +42,7 @@ __all__ = [
     "write_picture",
 ]
 
-FORCE = flag(None, "Replace files of these names even if workhold has not written them.", "--force")
+FORCE = make_flag(None, "Replace files of these names even if workhold has not written them.", "--force")
 
 # What the permission to replace a file is called here.
 CALLED = "--force"
@@ -62,7 +62,7 @@ def refuse_output_folder(
     replacing.refuse_output_folder(folder, names, inputs, force, CALLED)
 
 
-def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
+def read_picture_path(draw: str | None, inputs: Iterable[str | Path | None], force: bool) -> Path | None:
     """Return the path of the picture asked for; None where none is.
 
     Refuses another ending than .svg and .png.
@@ -70,7 +70,7 @@ def asked_picture(draw: str | None, inputs: Iterable[str | Path | None], force: 
     if draw is None:
         return None
     path = Path(draw)
-    picture_ending(path)
+    read_picture_ending(path)
     refuse_output(path, inputs, force)
     return path
 
@@ -87,7 +87,7 @@ OUTPUT = "Results"
 STANDARD_OUTPUT = "-"
 FORMS = ("json", "csv", "npz")
 
-FORMAT = option(
+FORMAT = make_option(
     OUTPUT,
     "json|csv|npz",
     "Form of the file: csv for a spreadsheet, npz in columns for a great many fixtures. If not given, the "
@@ -96,13 +96,13 @@ FORMAT = option(
 )
 
 
-def output_form(out: str | None, asked: str | None) -> str:
+def choose_output_form(out: str | None, asked: str | None) -> str:
     """Return the form of a result file: the one asked for, or the one that its name suggests.
 
     Refuses one that no terminal can take.
     """
     ending = "" if out is None else out.lower().rpartition(".")[2]
-    form = (ending if ending in FORMS else "json") if asked is None else choice("--format", asked, FORMS)
+    form = (ending if ending in FORMS else "json") if asked is None else read_choice("--format", asked, FORMS)
     if form == "npz" and out == STANDARD_OUTPUT:
         raise InputError("--format npz needs a file: name one with --out.")
     return form
@@ -121,15 +121,15 @@ def write_output(result: Result, out: str, form: str) -> None:
         save(result, out, form, overwrite=True)
         return
     if form == "csv":
-        from workhold.files.result.fixture_text import result_csv_text as text_of
+        from workhold.files.result.fixture_text import write_result_csv as write_text
     else:
-        from workhold.files.result.writer import result_text as text_of
-    sys.stdout.writelines(text_of(result))
+        from workhold.files.result.writer import write_result_text as write_text
+    sys.stdout.writelines(write_text(result))
     sys.stdout.flush()
 
 
 def write_found(result: Result, out: str, form: str) -> Result:
-    """Write what a search found and returns it; after a Ctrl-C it writes only the best of millions."""
+    """Write what a search found and return it; after a Ctrl-C it writes only the best of millions."""
     try:
         write_output(result, out, form)
     except Interrupted:
@@ -143,7 +143,9 @@ def write_found(result: Result, out: str, form: str) -> Result:
     return result
 
 
-JSON = flag(None, "Print one JSON object instead of tables; lengths in mm whatever --unit says.", "--json")
+JSON = make_flag(
+    None, "Print one JSON object instead of tables; lengths in mm whatever --unit says.", "--json"
+)
 
 
 def refuse_both(as_json: bool, out: str | None) -> None:

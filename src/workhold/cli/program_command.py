@@ -8,13 +8,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import asdict, evolve, frozen
 
-from workhold.cli.commands import option, spread
-from workhold.cli.declared import one_word, options_of
+from workhold.cli.commands import make_option, spread_option_groups
+from workhold.cli.declared import make_option_attributes, make_word_attribute
 from workhold.cli.options import SHOWN_UNIT
-from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
-from workhold.cli.program_options import OF_CUTTING, OF_PROGRAM, STOCK, asked_reading, asked_zero
+from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
+from workhold.cli.program_options import (
+    OF_CUTTING,
+    OF_PROGRAM,
+    STOCK,
+    make_reader_arguments,
+    read_program_zero,
+)
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import length_unit, optional_positive_length
+from workhold.cli.values import read_optional_positive_length, read_unit
 
 if TYPE_CHECKING:
     import numpy as np
@@ -48,18 +54,20 @@ OF_RUN = [
     evolve(row, **{"section": READING} | OWN.get(row.name, {}))
     for row in sorted((row for row in OF_PROGRAM if row.name in ORDER), key=lambda row: ORDER.index(row.name))
 ]
-RUN_TOOLS = option(
+RUN_TOOLS = make_option(
     READING, "FILE", "Table of tools: TOML, CSV, or LinuxCNC's; the program's comments if not given."
 )
-RUN_THICKNESS = option(PLACE, "LENGTH", "Thickness of the part; without it heights are those of the program.")
+RUN_THICKNESS = make_option(
+    PLACE, "LENGTH", "Thickness of the part; without it heights are those of the program."
+)
 
 
 @frozen(
-    these=options_of(
+    these=make_option_attributes(
         (*OF_RUN, *OF_CUTTING),
-        unit={"tools": one_word(RUN_TOOLS)},
-        cutting_force={"thickness": one_word(RUN_THICKNESS)},
-        stock=one_word(STOCK),
+        unit={"tools": make_word_attribute(RUN_TOOLS)},
+        cutting_force={"thickness": make_word_attribute(RUN_THICKNESS)},
+        stock=make_word_attribute(STOCK),
     )
 )
 class RunWords:
@@ -73,14 +81,14 @@ class RunWords:
         stock: str | None
 
 
-@spread
+@spread_option_groups
 def program(
     program_file: Annotated[
         str, typer.Argument(metavar="PROGRAM", help="A program of RS-274 (G-code), for the mill.")
     ],
     *,
     words: RunWords,
-    draw: str | None = option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
+    draw: str | None = make_option(None, "FILE", "Draw the paths of the tools (.svg or .png)."),
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
@@ -91,10 +99,10 @@ def program(
 
     Example: workhold program bracket.nc --tools tools.toml --draw bracket.png
     """
-    shown = length_unit(unit)
-    picture = asked_picture(draw, (program_file, words.tools), force)
-    height = optional_positive_length("--thickness", words.thickness, shown)
-    asked = asked_reading(words, shown, height, asked_zero(words.zero, shown))
+    shown = read_unit(unit)
+    picture = read_picture_path(draw, (program_file, words.tools), force)
+    height = read_optional_positive_length("--thickness", words.thickness, shown)
+    asked = make_reader_arguments(words, shown, height, read_program_zero(words.zero, shown))
     from workhold.files.program.reader import read_program_with_calls
 
     read = read_program_with_calls(program_file, words.tools, **asked)
@@ -103,14 +111,14 @@ def program(
 
         write_picture(picture, draw_program(read.program, unit=shown))
     if json_:
-        print_json(**data_of(read), written=[str(picture)] if picture else [])
+        print_json(**convert_program_to_data(read), written=[str(picture)] if picture else [])
         return
     report(read, shown, from_z_zero=words.z_zero == "top" and height is None)
     if picture is not None:
         print_tables(f"Written to {picture}.")
 
 
-def data_of(read: ReadProgram) -> dict[str, Any]:
+def convert_program_to_data(read: ReadProgram) -> dict[str, Any]:
     """Return what was understood, as plain data; lengths in mm."""
     from workhold.model.program_figures import bound_tip, measure_tools
 
@@ -123,11 +131,15 @@ def data_of(read: ReadProgram) -> dict[str, Any]:
         "calls": [{"line": line, "tool": number} for line, number in read.calls],
         "tip": {"low": low.tolist(), "high": high.tolist()},
         "figures": [asdict(one) for one in measure_tools(program)],
-        **({} if program.forces is None else {"cutting": force_data(program.forces, program.moves.tool)}),
+        **(
+            {}
+            if program.forces is None
+            else {"cutting": list_tool_forces(program.forces, program.moves.tool)}
+        ),
     }
 
 
-def force_data(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str, Any]]:
+def list_tool_forces(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str, Any]]:
     """Return the largest force, torque and axial forces of each tool, in N and N mm."""
     return [
         {
@@ -143,19 +155,19 @@ def force_data(forces: CuttingForces, tool: NDArray[np.int64]) -> list[dict[str,
     ]
 
 
-def force_table(program: Program, unit: Unit) -> list[Table | str]:
+def tabulate_tool_forces(program: Program, unit: Unit) -> list[Table | str]:
     forces = program.forces
     if forces is None:
         return []
     table = Table(("tool", f">across {unit.force}", ">torque", f">down {unit.force}", f">up {unit.force}"))
-    for one in force_data(forces, program.moves.tool):
+    for one in list_tool_forces(forces, program.moves.tool):
         up, down = -min(one["axial"][0], 0.0), max(one["axial"][1], 0.0)
         table.add_row(
             f"T{one['tool']}",
-            unit.force_above(one["force"]),
-            unit.moment_words(one["torque"]),
-            unit.force_above(down),
-            unit.force_above(up),
+            unit.format_force_rounded_up(one["force"]),
+            unit.format_moment(one["torque"]),
+            unit.format_force_rounded_up(down),
+            unit.format_force_rounded_up(up),
         )
     where = "in any direction" if forces.direction == "any" else "within 60 degrees of against the feed"
     said = forces.said(program.moves, program.tools).values()
@@ -164,18 +176,18 @@ def force_table(program: Program, unit: Unit) -> list[Table | str]:
         table,
         f"Forces on the part act {where}, at the tool's periphery.",
         *said,
-        stock_words(program, unit),
+        describe_stock(program, unit),
     ]
 
 
-def stock_words(program: Program, unit: Unit) -> str:
+def describe_stock(program: Program, unit: Unit) -> str:
     stock = program.stock
     assert stock is not None
     shape = "the part's outline" if stock.shape == "outline" else "the block around the part"
-    around = f"{shape} with {unit.text(stock.side)} around"
+    around = f"{shape} with {unit.format_length(stock.side)} around"
     if stock.height is None:
         return f"Only cuts that meet the stock count: {around}."
-    return f"Only cuts that meet the stock count: {around} and {unit.text(stock.top)} on top."
+    return f"Only cuts that meet the stock count: {around} and {unit.format_length(stock.top)} on top."
 
 
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
@@ -209,7 +221,7 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
             unit.number(one.cutting, 0 if unit.millimetres == 1 else 1),
             unit.number(one.rapid, 0 if unit.millimetres == 1 else 1),
             # A plus sign stands behind a time where some moves have no feed.
-            clock(one.seconds) + ("+" if one.untimed else ""),
+            format_time(one.seconds) + ("+" if one.untimed else ""),
             "" if one.lowest_cut is None else unit.number(one.lowest_cut),
         )
     low, high = bound_tip(program.moves)
@@ -223,17 +235,17 @@ def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
         f"{program.name}: {read.lines:,} lines in {program.unit}, {len(program.moves):,} moves.",
         table,
         f"The tips go from {spans} {short}; heights are above {above}.",
-        f"Cutting takes {clock(total)} at the program's feeds; rapid moves, dwells and tool "
+        f"Cutting takes {format_time(total)} at the program's feeds; rapid moves, dwells and tool "
         "changes come on top.",
         *program.notes,
-        *force_table(program, unit),
+        *tabulate_tool_forces(program, unit),
     )
 
 
-def clock(seconds: float) -> str:
+def format_time(seconds: float) -> str:
     """Return a time in hours, minutes and seconds.
 
-    >>> clock(75.4), clock(3675)
+    >>> format_time(75.4), format_time(3675)
     ('1:15', '1:01:15')
     """
     minutes, rest = divmod(round(seconds), 60)

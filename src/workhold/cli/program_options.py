@@ -11,16 +11,16 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, fields, frozen
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.program import FORCES, PROGRAM, CuttingQuestion, ProgramQuestion
-from workhold.cli.commands import option, print_remark, untyped
-from workhold.cli.declared import one_word, options_of, read_words
+from workhold.cli.commands import make_default_group, make_option, print_remark
+from workhold.cli.declared import make_option_attributes, make_word_attribute, read_words
 from workhold.cli.options import PartWords
 from workhold.cli.values import (
-    choice,
-    length,
-    optional_positive_length,
-    two_lengths,
+    read_choice,
+    read_length,
+    read_optional_positive_length,
+    read_two_lengths,
 )
 from workhold.errors import InputError
 from workhold.units import MILLIMETRE, Unit
@@ -35,30 +35,30 @@ __all__ = [
     "SOLIDS",
     "STOCK",
     "ProgramWords",
-    "asked_reading",
-    "asked_zero",
+    "make_reader_arguments",
+    "read_program_zero",
 ]
 
-OF_PROGRAM, OF_CUTTING = declarations_of(ProgramQuestion), declarations_of(CuttingQuestion)
+OF_PROGRAM, OF_CUTTING = list_declarations(ProgramQuestion), list_declarations(CuttingQuestion)
 # What is asked by words of its own, read with the part.
 BY_WORDS = ("zero", "z_zero")
-STOCK = option(
+STOCK = make_option(
     FORCES,
     "SHAPE,SIDE,TOP",
     "Raw stock, on which alone tools press: the part's outline, or the block around it, with "
     "stock around it and on top; outline,5,5 if not given. Give block, 0,0 or block,2,1.",
 )
-PROGRAM_FILE = option(
+PROGRAM_FILE = make_option(
     PROGRAM,
     "FILE",
     "List only fixtures that the tools of this program (G-code) keep clear of; see workhold program.",
 )
-TOOLS = option(
+TOOLS = make_option(
     PROGRAM,
     "FILE",
     "Table of the program's tools: TOML, CSV, or LinuxCNC's; the program's comments if not given.",
 )
-THICKNESS = option(
+THICKNESS = make_option(
     PROGRAM,
     "LENGTH",
     "Thickness of the part; that of its solid if not given. Pegs are as high as the part, or "
@@ -71,11 +71,11 @@ NO_HEIGHT: dict[str, Any] = {"peg_height": None}
 
 
 @frozen(
-    these=options_of(
+    these=make_option_attributes(
         (*OF_PROGRAM, *OF_CUTTING),
-        zero={"program": one_word(PROGRAM_FILE), "tools": one_word(TOOLS)},
-        stock=one_word(STOCK),
-        thickness=one_word(THICKNESS),
+        zero={"program": make_word_attribute(PROGRAM_FILE), "tools": make_word_attribute(TOOLS)},
+        stock=make_word_attribute(STOCK),
+        thickness=make_word_attribute(THICKNESS),
     )
 )
 class ProgramWords:
@@ -107,13 +107,15 @@ class ProgramWords:
         tools, _ = read_tools(self.tools, MILLIMETRE)
         return any(tool.cutting.asks_for_forces for tool in tools.values())
 
-    def reading(self, part: str, reading: PartWords) -> PartWords:
-        """How a part is read: of a drawing the peg height is no question of the reader but of the fixtures."""
+    def adapt_part_options(self, part: str, reading: PartWords) -> PartWords:
+        """Return how a part is read: of a drawing the peg height is no question of the reader but of the fixtures."""
         is_drawing = Path(part).suffix.lower() not in SOLIDS
         return evolve(reading, **NO_HEIGHT) if is_drawing else reading
 
-    def asked(self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None) -> dict[str, Any]:
-        """Keyword arguments of a query; reads the program, and prints remarks on it on stderr.
+    def read_query_arguments(
+        self, unit: Unit, peg_height: str | None, workpiece: Workpiece | None = None
+    ) -> dict[str, Any]:
+        """Read the program, print remarks on it on stderr, and return keyword arguments of a query.
 
         Parameters
         ----------
@@ -128,7 +130,7 @@ class ProgramWords:
         """
         if self.program is None:
             # Of a thickness other options make use as well.
-            usual = untyped(ProgramWords, thickness=self.thickness)
+            usual = make_default_group(ProgramWords, thickness=self.thickness)
             given = [
                 one.name
                 for one in fields(ProgramWords)
@@ -141,8 +143,8 @@ class ProgramWords:
         solid = None if workpiece is None else workpiece.solid
         if self.program is None:
             # Of a part that is read later nobody knows yet whether it has heights of its own.
-            return self.heights(unit, peg_height) if workpiece is not None and solid is None else {}
-        thick, high = self.heights(unit, peg_height).values()
+            return self.read_heights(unit, peg_height) if workpiece is not None and solid is None else {}
+        thick, high = self.read_heights(unit, peg_height).values()
         if solid is not None:
             thick, high = thick or solid.height, solid.peg_height
         if thick is None and (self.z_zero == "top" or high is None):
@@ -150,12 +152,13 @@ class ProgramWords:
                 "the part is an outline without heights, so it is not known which moves of --program "
                 "pass over the pegs: give its --thickness, and --peg-height where pegs are not as high."
             )
-        zero = zero_on(workpiece, self.zero, unit)
+        zero = read_program_zero_on_part(workpiece, self.zero, unit)
         heights = {"thickness": None if solid is not None else thick, "peg_height": high or thick}
         return {"program": read_once(self, unit, thick, zero), **heights}
 
-    def heights(self, unit: Unit, peg_height: str | None) -> dict[str, float | None]:
-        """The thickness of a drawn part and the height of the pegs in mm, None where they are not given.
+    def read_heights(self, unit: Unit, peg_height: str | None) -> dict[str, float | None]:
+        """Return the thickness of a drawn part and the height of the pegs in mm, None where they are not
+        given.
 
         Raises
         ------
@@ -163,53 +166,55 @@ class ProgramWords:
             For what is no length above 0.
         """
         return {
-            "thickness": optional_positive_length("--thickness", self.thickness, unit),
-            "peg_height": optional_positive_length("--peg-height", peg_height, unit),
+            "thickness": read_optional_positive_length("--thickness", self.thickness, unit),
+            "peg_height": read_optional_positive_length("--peg-height", peg_height, unit),
         }
 
 
-def asked_stock(text: str, unit: Unit) -> dict[str, Any]:
+def read_stock_arguments(text: str, unit: Unit) -> dict[str, Any]:
     """Return what the part is cut from, as ``model.stock.Stock.of`` takes it.
 
     Examples
     --------
-    >>> asked_stock("block", MILLIMETRE), asked_stock("0,2", MILLIMETRE)
+    >>> read_stock_arguments("block", MILLIMETRE), read_stock_arguments("0,2", MILLIMETRE)
     ({'shape': 'block'}, {'side': 0.0, 'top': 2.0})
     """
     first, *rest = (word.strip() for word in text.split(","))
     given: dict[str, Any] = {}
     if first[:1].isalpha():
-        given["shape"] = choice("--stock", first, ("outline", "block"))
+        given["shape"] = read_choice("--stock", first, ("outline", "block"))
         if not rest:
             return given
     else:
         rest = [first, *rest]
     remedy = "the stock: give outline or block, the stock around and on top, such as 0,2, or block,0,2."
-    side, top = two_lengths("--stock", ",".join(rest), unit, remedy)
+    side, top = read_two_lengths("--stock", ",".join(rest), unit, remedy)
     return given | {"side": side, "top": top}
 
 
-def asked_zero(text: str, unit: Unit) -> tuple[float, float]:
+def read_program_zero(text: str, unit: Unit) -> tuple[float, float]:
     """Return the place of the program's zero on the part, in mm."""
-    return two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
+    return read_two_lengths("--zero", text, unit, "a place here: give two lengths, such as 10,5.")
 
 
-def zero_on(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
-    """The place of the program's zero in mm, which the part's own places may name as on the setup sheet.
+def read_program_zero_on_part(workpiece: Workpiece | None, text: str, unit: Unit) -> tuple[float, float]:
+    """Return the place of the program's zero in mm, which the part's own places may name as on the setup
+    sheet.
 
     Refuses a place that the part does not have, or that is named where no part is known.
     """
     if workpiece is None or not text.strip()[:1].isalpha():
-        return asked_zero(text, unit)
+        return read_program_zero(text, unit)
     from workhold.model.setup import part_zero
 
     return part_zero(workpiece, text, unit).point
 
 
-def asked_reading(
+def make_reader_arguments(
     words: Any, unit: Unit, thickness: float | None, zero: tuple[float, float]
 ) -> dict[str, Any]:
-    """Keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in mm.
+    """Return keyword arguments of ``files.program.reader.read_program``; ``thickness`` and ``zero`` are in
+    mm.
 
     Parameters
     ----------
@@ -224,19 +229,19 @@ def asked_reading(
     rows = [row for row in OF_PROGRAM if row.name not in BY_WORDS and hasattr(words, row.argument)]
     return read_words(rows, words, unit) | {
         "zero": zero,
-        "z_zero": height if height in ("top", "bottom") else length("--z-zero", height, unit),
+        "z_zero": height if height in ("top", "bottom") else read_length("--z-zero", height, unit),
         "thickness": thickness,
         "called": CALLED,
         "cutting": CuttingData(**read_words(OF_CUTTING, words, unit)),
-        "stock": None if words.stock is None else asked_stock(words.stock, unit),
+        "stock": None if words.stock is None else read_stock_arguments(words.stock, unit),
     }
 
 
 @cache
 def read_once(words: ProgramWords, unit: Unit, thickness: float | None, zero: tuple[float, float]) -> Program:
-    """Read the program, and prints remarks on it; ``thickness`` of the part and ``zero`` in mm."""
+    """Read the program, and print remarks on it; ``thickness`` of the part and ``zero`` in mm."""
     assert words.program is not None
-    asked = asked_reading(words, unit, thickness, zero)
+    asked = make_reader_arguments(words, unit, thickness, zero)
     from workhold.files.program.reader import read_program
 
     program = read_program(words.program, words.tools, **asked)

@@ -12,12 +12,12 @@ from attrs import define, field
 
 from workhold.cli.commands import print_remark
 from workhold.cli.ending import keep_what_is_found
-from workhold.errors import plain
+from workhold.errors import make_printable
 
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-__all__ = ["BatchProgress", "batch_progress", "progress_bar", "search_progress"]
+__all__ = ["BatchProgress", "show_batch_progress", "show_progress", "search_progress"]
 
 # Seconds without a bar; loading it takes a tenth of one.
 MOMENT = 1.0
@@ -26,11 +26,11 @@ ONLY_TASK = cast("TaskID", 0)
 
 @contextmanager
 def search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]]:
-    """The progress bar of a search, as a function of the fraction done and the fixtures found.
+    """Yield the progress bar of a search, as a function of the fraction done and the fixtures found.
 
     Where ``keeps`` is set an interrupted search gets the time to return what it has found.
     """
-    with progress_bar("Searching", "found") as show:
+    with show_progress("Searching", "found") as show:
 
         def progress(fraction: float, found: int) -> None:
             if found and keeps:
@@ -41,10 +41,10 @@ def search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], None]
 
 
 @contextmanager
-def progress_bar(
+def show_progress(
     doing: str, counted: str, first: str | None = None
 ) -> Iterator[Callable[[float, int], None]]:
-    """A progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
+    """Yield a progress bar on stderr, as a function of the fraction done and a count; quiet in a pipe.
 
     It appears when there is progress after a moment, so that what is done at once is not kept waiting for it.
     ``doing`` is what is being done, ``counted`` the word behind the number, and ``first`` what is said until
@@ -54,13 +54,13 @@ def progress_bar(
         yield lambda fraction, count: None
         return
     begun = perf_counter()
-    bars = [shown_bar(first, counted)] if first else []
+    bars = [make_progress_bar(first, counted)] if first else []
 
     def progress(fraction: float, count: int) -> None:
         if not bars:
             if perf_counter() - begun < MOMENT:
                 return
-            bars.append(shown_bar(doing, counted))
+            bars.append(make_progress_bar(doing, counted))
         bars[0].update(ONLY_TASK, completed=fraction, count=count, description=doing)
 
     try:
@@ -70,7 +70,7 @@ def progress_bar(
             bar.stop()
 
 
-def shown_bar(words: str, counted: str) -> Progress:
+def make_progress_bar(words: str, counted: str) -> Progress:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
@@ -109,7 +109,7 @@ class BatchProgress:
     count: int = field(default=0, init=False)
     done: int = field(default=0, init=False)
 
-    def stage(self, doing: str, count: int, seconds: float) -> None:
+    def begin_stage(self, doing: str, count: int, seconds: float) -> None:
         """Begin a stage of so many tasks, which take about so many seconds in all."""
         self.count, self.done = count, 0
         if self.bars is None or count == 0:
@@ -123,20 +123,20 @@ class BatchProgress:
         """How many tasks are done."""
         return f"{self.done:,} of {self.count:,}"
 
-    def one_done(self, seconds: float) -> None:
-        """Counts a task that is done, and advances the bar by its expected seconds."""
+    def count_done(self, seconds: float) -> None:
+        """Count a task that is done, and advance the bar by its expected seconds."""
         self.done += 1
         if self.bars is not None and self.whole is not None:
             self.bars.update(self.whole, advance=seconds, words=self.words)
 
-    def begun(self, worker: str, title: str) -> None:
+    def note_begun(self, worker: str, title: str) -> None:
         if self.bars is None:
             return
-        self.ended(worker)
-        words = plain(title)[:LONGEST_TITLE].replace("[", "\\[")
+        self.note_ended(worker)
+        words = make_printable(title)[:LONGEST_TITLE].replace("[", "\\[")
         self.hands[worker] = self.bars.add_task(f"  {worker}: {words}", total=None, words="")
 
-    def ended(self, worker: str) -> None:
+    def note_ended(self, worker: str) -> None:
         if self.bars is not None and worker in self.hands:
             self.bars.remove_task(self.hands.pop(worker))
 
@@ -145,12 +145,12 @@ class BatchProgress:
         if self.bars is None:
             print_remark(sentence)
         else:
-            self.bars.console.print(f"workhold: {plain(sentence)}", markup=False, highlight=False)
+            self.bars.console.print(f"workhold: {make_printable(sentence)}", markup=False, highlight=False)
 
 
 @contextmanager
-def batch_progress() -> Iterator[BatchProgress]:
-    """The progress of a batch on stderr; quiet in a pipe, but for what happens to workers."""
+def show_batch_progress() -> Iterator[BatchProgress]:
+    """Yield the progress of a batch on stderr; quiet in a pipe, but for what happens to workers."""
     if not sys.stderr.isatty():
         yield BatchProgress(None)
         return

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import flag, option
+from workhold.cli.commands import make_flag, make_option
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.options import ResultArgument
 from workhold.cli.outputs import (
@@ -20,16 +20,16 @@ from workhold.cli.outputs import (
     FORMAT,
     JSON,
     STANDARD_OUTPUT,
-    output_form,
+    choose_output_form,
     print_json,
     print_written,
     refuse_both,
     refuse_result_file,
     write_output,
 )
-from workhold.cli.progress import progress_bar, search_progress
-from workhold.cli.table import plural, print_tables
-from workhold.cli.values import optional_count, whole_number
+from workhold.cli.progress import search_progress, show_progress
+from workhold.cli.table import format_count, print_tables
+from workhold.cli.values import read_optional_count, read_whole_number
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def convert(
 
     Example: workhold convert part.npz part.json
     """
-    form = output_form(out, format_)
+    form = choose_output_form(out, format_)
     refuse_both(json_, out)
     if out != STANDARD_OUTPUT:
         refuse_result_file(out, form, (result_file,), force)
@@ -63,7 +63,7 @@ def convert(
     result = read_result(result_file)
     write_output(result, out, form)
     if out != STANDARD_OUTPUT:
-        print_written(json_, f"{plural(len(result), 'fixture')} written to {out}.", out)
+        print_written(json_, f"{format_count(len(result), 'fixture')} written to {out}.", out)
 
 
 REFUTED = 2
@@ -99,15 +99,17 @@ class VerifyAnswer:
 
 def verify(
     result_file: ResultArgument,
-    list_: str = option(
+    list_: str = make_option(
         None, "N", "Number of fixtures to list on the terminal that are not proven.", "--list", default="5"
     ),
-    complete: bool = flag(
+    complete: bool = make_flag(
         None,
         "Also search again, and compare the fixtures, their number, and the account of the search.",
         "--complete",
     ),
-    threads: str | None = option(None, "N", "Threads of that search; as many as processors if not given."),
+    threads: str | None = make_option(
+        None, "N", "Threads of that search; as many as processors if not given."
+    ),
     json_: bool = JSON,
 ) -> None:
     """Prove or refute every fixture of a result, and every number written with it.
@@ -127,7 +129,7 @@ def verify(
 
 def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: bool) -> VerifyTask:
     """Read what was typed."""
-    listed, workers = whole_number("--list", list_), optional_count("--threads", threads)
+    listed, workers = read_whole_number("--list", list_), read_optional_count("--threads", threads)
     from workhold.verification.supports import is_supports_file
 
     of_supports = is_supports_file(path)
@@ -148,26 +150,26 @@ def ask(asked: VerifyTask) -> VerifyAnswer:
     if asked.of_supports:
         return VerifyAnswer(verify_supports_file(asked.path), f"{perf_counter() - start:.1f} s")
     listing = read_listing(asked.path)
-    with progress_bar("Verifying", "not proven") as progress:
+    with show_progress("Verifying", "not proven") as progress:
         outcome = verify_listing(listing, progress)
     if asked.complete:
-        outcome = compared(outcome, listing, asked.threads)
+        outcome = compare_with_search(outcome, listing, asked.threads)
     spent = f"{perf_counter() - start:.1f} s"
-    return VerifyAnswer(outcome, spent, scope(outcome, asked.complete, listing))
+    return VerifyAnswer(outcome, spent, describe_verified_scope(outcome, asked.complete, listing))
 
 
 def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
     """Print what is not proven, and end with a code that says so."""
     outcome = answer.outcome
     if asked.as_json:
-        from workhold.presenting.data import verification_data
+        from workhold.presenting.data import describe_verification
 
-        print_json(**verification_data(outcome))
+        print_json(**describe_verification(outcome))
     else:
-        unproven, tally = unproven_sentences(outcome, asked.listed), summary(outcome)
+        unproven, tally = explain_unproven(outcome, asked.listed), summarize_verification(outcome)
         if asked.of_supports:
             unproven = [sentence.replace("Fixture", "Triple", 1) for sentence in unproven]
-            of_all = f"{plural(outcome.fixtures, 'triple')} of supports"
+            of_all = f"{format_count(outcome.fixtures, 'triple')} of supports"
             tally = f"{of_all}: {outcome.proven} proven, {outcome.refuted} refuted"
         print_tables(*unproven, f"{tally}; {answer.spent}", *answer.scope)
     if asked.complete and not outcome.is_compared:
@@ -176,35 +178,35 @@ def report(asked: VerifyTask, answer: VerifyAnswer) -> None:
         raise typer.Exit(REFUTED)
 
 
-def compared(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
+def compare_with_search(outcome: Verification, listing: Listing, workers: int | None) -> Verification:
     from workhold.cli.warming import compile_kernels
-    from workhold.completeness import completed
+    from workhold.completeness import complete_verification
 
     with ask_to_stop("nothing is compared") as cancel:
         compile_kernels(cancel)
         with search_progress() as progress:
-            return completed(outcome, listing, threads=workers, progress=progress, cancel=cancel)
+            return complete_verification(outcome, listing, threads=workers, progress=progress, cancel=cancel)
 
 
-def scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
-    from workhold.verification.verify import not_shown
+def describe_verified_scope(outcome: Verification, asked: bool, listing: Listing) -> list[str]:
+    from workhold.verification.verify import list_not_shown
 
     if outcome.is_compared:
         return ["A search of the same query was compared with the file."]
     if asked:
         return ["The search was interrupted, so nothing was compared."]
-    points = not_shown(listing.query.toolkit, listing.query.seating is not None)
+    points = list_not_shown(listing.query.toolkit, listing.query.seating is not None)
     return ["A file alone cannot show this; --complete checks it:", *(f"  - {point}" for point in points)]
 
 
-def summary(outcome: Verification) -> str:
+def summarize_verification(outcome: Verification) -> str:
     return (
-        f"{plural(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
+        f"{format_count(outcome.fixtures, 'fixture')}: {outcome.proven} proven, {outcome.refuted} refuted, "
         f"{outcome.undecided} undecided at {outcome.bits} bits"
     )
 
 
-def unproven_sentences(outcome: Verification, count: int) -> list[str]:
+def explain_unproven(outcome: Verification, count: int) -> list[str]:
     """Say what is wrong with the file and with the first fixtures not proven, the refuted ones first."""
     sentences = [f"The file: {fault}." for fault in outcome.faults]
     unproven = sorted(outcome.unproven, key=lambda fixture: fixture.verdict != "refuted")

@@ -10,12 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, frozen
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEATING, RuledOut, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
-from workhold.cli.commands import option
-from workhold.cli.declared import one_word, option_of, options_of, read_words, several_words
-from workhold.cli.values import length
+from workhold.cli.commands import make_option
+from workhold.cli.declared import (
+    make_field_option,
+    make_list_attribute,
+    make_option_attributes,
+    make_word_attribute,
+    read_words,
+)
+from workhold.cli.values import read_length
 from workhold.errors import InputError
 from workhold.units import Unit
 
@@ -31,9 +37,9 @@ __all__ = [
     "LoadWords",
     "QueryWords",
     "SeatingWords",
-    "asked_loads",
+    "read_asked_loads",
     "parse_load",
-    "with_fit_of",
+    "add_dowel_fit",
 ]
 
 LOAD_HELP = (
@@ -76,15 +82,15 @@ def parse_load(text: str, unit_scale: float = 1.0) -> Load:
     return load_from_words(values, place, unit_scale)
 
 
-LOAD = option(LOADS, "LOAD", LOAD_HELP)
-LOADS_FILE = option(LOADS, "FILE", "TOML file with loads.")
+LOAD = make_option(LOADS, "LOAD", LOAD_HELP)
+LOADS_FILE = make_option(LOADS, "FILE", "TOML file with loads.")
 # Of loads on a fixture that is known, as its sheet has them.
-OF_LOADS = declarations_of(SheetQuestion, [LOADS])
-JAW_FORCE, FRICTION = (option_of(row) for row in OF_LOADS if row.name in ("jaw_force", "friction"))
-LOADS_TYPED = {"load": several_words(LOAD), "loads": one_word(LOADS_FILE)}
+OF_LOADS = list_declarations(SheetQuestion, [LOADS])
+JAW_FORCE, FRICTION = (make_field_option(row) for row in OF_LOADS if row.name in ("jaw_force", "friction"))
+LOADS_TYPED = {"load": make_list_attribute(LOAD), "loads": make_word_attribute(LOADS_FILE)}
 
 
-@frozen(these=options_of(OF_LOADS, jaw_force=LOADS_TYPED))
+@frozen(these=make_option_attributes(OF_LOADS, jaw_force=LOADS_TYPED))
 class LoadWords:
     """The options of loads on a fixture that is known, as typed; None for those not given."""
 
@@ -92,23 +98,23 @@ class LoadWords:
         load: list[str] | None
         loads: str | None
 
-    def asked(self, unit: Unit) -> dict[str, Any]:
-        """The jaw force in N, how stiff the jaw is and the friction, None for those not given, and the loads."""
+    def read_arguments(self, unit: Unit) -> dict[str, Any]:
+        """Return the jaw force in N, how stiff the jaw is and the friction, None for those not given, and the loads."""
         from workhold.statics.loads import jaw_stiffness
 
         asked = read_words(OF_LOADS, self, unit)
         asked["jaw"] = jaw_stiffness(asked["jaw"])
-        return asked | {"loads": asked_loads(self.load, self.loads, unit)}
+        return asked | {"loads": read_asked_loads(self.load, self.loads, unit)}
 
 
 # What a search in one toolkit and a comparison of several both ask; beside these fields stand options that are no fields.
-OF_RESTRICTIONS = declarations_of(RuledOut)
-OF_SEARCHES = declarations_of(SearchQuestion, (RULING_OUT, LOADS, RANKING))
-OF_SEATING = declarations_of(SearchQuestion, (SEATING,))
+OF_RESTRICTIONS = list_declarations(RuledOut)
+OF_SEARCHES = list_declarations(SearchQuestion, (RULING_OUT, LOADS, RANKING))
+OF_SEATING = list_declarations(SearchQuestion, (SEATING,))
 BESIDE = {
     "zones": {
-        "not_on_faces_cut_in": one_word(
-            option(
+        "not_on_faces_cut_in": make_word_attribute(
+            make_option(
                 RULING_OUT,
                 "FILE",
                 "For a solid's second side: the result of the first. Faces that the first set-up avoids, "
@@ -117,8 +123,8 @@ BESIDE = {
         )
     },
     "jaw_force": LOADS_TYPED,
-    "rank_by": one_word(
-        option(
+    "rank_by": make_word_attribute(
+        make_option(
             RANKING,
             "FIGURES",
             "Figures that order the fixtures, the first counting most, such as penalty,tilt, instead "
@@ -129,16 +135,16 @@ BESIDE = {
             "with a program program-clearance, and for two clamps clamp-freedom.",
         )
     ),
-    "prefer": one_word(
-        option(
+    "prefer": make_word_attribute(
+        make_option(
             RANKING,
             "square|strong|precise|roomy",
             "What you want most, instead of --rank-by: the part square to the jaws, gentle pegs, the "
             "best location, or contacts far from edges and from the program's tools.",
         )
     ),
-    "tolerance": one_word(
-        option(
+    "tolerance": make_word_attribute(
+        make_option(
             RANKING,
             "PEG[,FACE]",
             "Largest errors of pegs and faces, for the location error; 0.01mm if neither this nor "
@@ -148,7 +154,7 @@ BESIDE = {
 }
 
 
-@frozen(these=options_of((*OF_RESTRICTIONS, *OF_SEARCHES), **BESIDE))
+@frozen(these=make_option_attributes((*OF_RESTRICTIONS, *OF_SEARCHES), **BESIDE))
 class QueryWords:
     """The options of what is asked for, as typed; None for those not given."""
 
@@ -160,8 +166,10 @@ class QueryWords:
         prefer: str | None
         tolerance: str | None
 
-    def asked(self, unit: Unit, has_program: bool = False, has_forces: bool = False) -> dict[str, Any]:
-        """Keyword arguments of a query; the tolerance is None where none was typed.
+    def read_arguments(
+        self, unit: Unit, has_program: bool = False, has_forces: bool = False
+    ) -> dict[str, Any]:
+        """Return keyword arguments of a query; the tolerance is None where none was typed.
 
         Parameters
         ----------
@@ -176,18 +184,21 @@ class QueryWords:
         from workhold.model.quality import read_asked_ranking
         from workhold.model.requirements import Restrictions
 
-        loads = asked_loads(self.load, self.loads, unit)
+        loads = read_asked_loads(self.load, self.loads, unit)
         names = None if self.rank_by is None else [word for word in self.rank_by.split(",") if word.strip()]
         return read_words(OF_SEARCHES, self, unit) | {
             "restrictions": Restrictions(**read_words(OF_RESTRICTIONS, self, unit)),
             "rank_by": read_asked_ranking(names, self.prefer, bool(loads) or has_forces, has_program),
-            "tolerance": asked_tolerance(self.tolerance, unit),
+            "tolerance": read_tolerance(self.tolerance, unit),
             "loads": loads,
         }
 
 
-def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: str | None) -> Restrictions:
-    """Restrictions that also avoid what another set-up of the same solid avoided, because it was cut there.
+def avoid_faces_cut_before(
+    restrictions: Restrictions, workpiece: Workpiece, before: str | None
+) -> Restrictions:
+    """Return the restrictions that also avoid what another set-up of the same solid avoided, because it was
+    cut there.
 
     ``before`` is the result file of the other set-up. Refuses parts whose faces have no numbers of a solid.
     """
@@ -208,7 +219,7 @@ def without_faces_cut(restrictions: Restrictions, workpiece: Workpiece, before: 
     return evolve(restrictions, avoid=(*restrictions.avoid, *avoid))
 
 
-def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
+def read_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
     from workhold.model.requirements import Tolerance
 
     if text is None:
@@ -218,18 +229,18 @@ def asked_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
         raise InputError(
             f"--tolerance {text!r} has {len(words)} numbers: give one for pegs and faces, or PEG,FACE."
         )
-    lengths = [length("--tolerance", word, unit) for word in words]
+    lengths = [read_length("--tolerance", word, unit) for word in words]
     return Tolerance(lengths[0], lengths[-1])
 
 
-def with_fit_of(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
+def add_dowel_fit(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
     """Return the tolerance asked for, or that of a named vise; keeps the fit of the named vise's dowels."""
     if asked is None or named is None:
         return asked or named
     return evolve(asked, fit=named.fit)
 
 
-def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:
+def read_asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[Load, ...]:
     if not loads and file is None:
         return ()
     from workhold.files.loads_file import read_loads
@@ -238,12 +249,12 @@ def asked_loads(loads: list[str] | None, file: str | None, unit: Unit) -> tuple[
     return typed + (() if file is None else read_loads(file, unit.millimetres))
 
 
-@frozen(these=options_of(OF_SEATING))
+@frozen(these=make_option_attributes(OF_SEATING))
 class SeatingWords:
     """The options of seating, as typed; None for those not given."""
 
-    def asked(self, unit: Unit) -> dict[str, Any]:
-        """Keyword arguments of a query.
+    def read_arguments(self, unit: Unit) -> dict[str, Any]:
+        """Return keyword arguments of a query.
 
         Raises
         ------

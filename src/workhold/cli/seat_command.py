@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 from attrs import frozen
 
-from workhold.cli.commands import option, print_remark, spread
-from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.commands import make_option, print_remark, spread_option_groups
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
+from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import choice, length_unit, optional_positive_length, printed_unit
+from workhold.cli.values import choose_printed_unit, read_choice, read_optional_positive_length, read_unit
 from workhold.units import Unit
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from workhold.model.seating import Seat, Seating
     from workhold.seating.clamping import Gauge
 
-__all__ = ["by_hand_words", "seat", "seat_table", "seating_words"]
+__all__ = ["describe_steps_by_hand", "seat", "seat_table", "describe_seating"]
 
 SIDES = ("both", "drawn", "turned-over")
 
@@ -30,16 +30,16 @@ SIDES = ("both", "drawn", "turned-over")
 class SeatWords:
     """The options of what is shown of a seating and where it is drawn, as typed."""
 
-    side: str = option(
+    side: str = make_option(
         None, "WORD", "Side of the part that may lie up: drawn, turned-over, or both.", default="both"
     )
-    opening: str | None = option(
+    opening: str | None = make_option(
         None,
         "LENGTH",
         "Open the jaws, or draw the clamp back, by this much to put the part in; as far as "
         "possible if not given.",
     )
-    draw: str | None = option(
+    draw: str | None = make_option(
         None, "FILE", "Draw the places in which the part can rest into this file, .svg or .png."
     )
     force: bool = FORCE
@@ -53,7 +53,7 @@ class SeatTask:
 
     Parameters
     ----------
-    side, opened : which seats are shown, see :func:`shown_seats`.
+    side, opened : which seats are shown, see :func:`list_shown_seats`.
     unit : of lengths shown.
     """
 
@@ -78,7 +78,7 @@ class SeatTask:
         return [] if self.picture is None else [str(self.picture)]
 
 
-@spread
+@spread_option_groups
 def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords) -> None:
     """Report whether the part ends up in the pose of fixture N when you tighten the vise or the clamp.
 
@@ -88,7 +88,7 @@ def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords)
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
-    asked = parse(result_file, asked_rank(number), words)
+    asked = parse(result_file, read_rank(number), words)
     if asked.result.toolkit.closes_at_once:
         report(asked, ask(asked))
     else:
@@ -97,11 +97,11 @@ def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatWords)
 
 def parse(result_file: str, rank: int, words: SeatWords) -> SeatTask:
     """Read what was typed, and the fixture."""
-    shown, side = length_unit(words.unit), choice("--side", words.side, SIDES)
-    opened = optional_positive_length("--opening", words.opening, shown)
-    picture = asked_picture(words.draw, (result_file,), words.force)
-    result = result_with(result_file, rank)
-    unit = printed_unit(words.unit, result.toolkit)
+    shown, side = read_unit(words.unit), read_choice("--side", words.side, SIDES)
+    opened = read_optional_positive_length("--opening", words.opening, shown)
+    picture = read_picture_path(words.draw, (result_file,), words.force)
+    result = read_result_with_rank(result_file, rank)
+    unit = choose_printed_unit(words.unit, result.toolkit)
     return SeatTask(result, rank, side, opened, picture, unit, words.json_)
 
 
@@ -125,14 +125,14 @@ def report(asked: SeatTask, seating: Seating) -> None:
     from workhold.seating.clamping import Gauge
 
     result, fixture, unit = asked.result, asked.fixture, asked.unit
-    gauge, seats = Gauge(fixture, result.toolkit), shown_seats(seating, asked.side, asked.opened, result)
+    gauge, seats = Gauge(fixture, result.toolkit), list_shown_seats(seating, asked.side, asked.opened, result)
     if not asked.as_json:
         print_tables(
             asked.title,
             "",
-            *setting_words(seating, gauge, unit),
+            *describe_setting(seating, gauge, unit),
             "",
-            *wrong_words(seating, seats, asked.opened, gauge, unit),
+            *describe_wrong_seats(seating, seats, asked.opened, gauge, unit),
             seat_table(seats, gauge, unit),
         )
     for words in seating.unsettled:
@@ -158,22 +158,22 @@ def report_by_hand(asked: SeatTask) -> None:
     if asked.picture is not None:
         write_picture(asked.picture, draw_fixture(*held, title=f"Fixture {asked.rank}", unit=unit))
     if asked.as_json:
-        steps = by_hand(*held).as_fields(unit.text)
+        steps = by_hand(*held).as_fields(unit.format_length)
         print_json(rank=asked.rank, seating=None, by_hand=steps, written=asked.written)
         return
-    print_tables(asked.title, *by_hand_words(asked.rank, result, unit))
+    print_tables(asked.title, *describe_steps_by_hand(asked.rank, result, unit))
     print_tables(*(f"Drawn in {path}." for path in asked.written))
 
 
-def by_hand_words(rank: int, result: Result, unit: Unit) -> list[str]:
+def describe_steps_by_hand(rank: int, result: Result, unit: Unit) -> list[str]:
     """List in numbered steps how to put in a part that two clamps hold."""
     from workhold.seating.clamping import WHY, by_hand
 
-    steps = by_hand(result[rank - 1], result.workpiece, result.toolkit).steps(unit.text)
+    steps = by_hand(result[rank - 1], result.workpiece, result.toolkit).steps(unit.format_length)
     return ["", WHY, "", *(f"{number}. {step}" for number, step in enumerate(steps, 1))]
 
 
-def shown_seats(seating: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
+def list_shown_seats(seating: Seating, side: str, opened: float | None, result: Result) -> list[Seat]:
     """List the seats that can be reached; the fixture's own is first."""
     own = [one for one in seating.seats if one.is_own]
     rest = [
@@ -187,23 +187,23 @@ def shown_seats(seating: Seating, side: str, opened: float | None, result: Resul
     return own + [one for one in rest if most is None or one.jaw_separation <= most]
 
 
-def seating_words(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
+def describe_seating(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
     """Say of the seating of a fixture what to do, what to read, and what to beware of."""
     from workhold.seating.clamping import Gauge
 
     seating: Seating = fixture.seating
     gauge = Gauge(fixture, result.toolkit)
     beware = [f"Beware: {words}." for words in seating.warnings]
-    seats = shown_seats(seating, SIDES[0], seating.opening, result)
+    seats = list_shown_seats(seating, SIDES[0], seating.opening, result)
     return [
         "",
-        *setting_words(seating, gauge, unit),
-        *wrong_words(seating, seats, seating.opening, gauge, unit),
+        *describe_setting(seating, gauge, unit),
+        *describe_wrong_seats(seating, seats, seating.opening, gauge, unit),
         *beware,
     ]
 
 
-def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
+def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     from workhold.model.seating import DRY_STEEL
 
     setting, carrier, ways = gauge.setting, gauge.carrier, gauge.ways
@@ -219,17 +219,17 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     else:
         wide = gauge.at(gauge.fixture.travel + seating.clamping * seating.capture_opening)
         words = [
-            f"{ways.open} to {named}{less} than {unit.text(wide)}, which is "
-            f"{unit.text(seating.capture_opening)} from where {ways.hold} the part. Put the part in "
+            f"{ways.open} to {named}{less} than {unit.format_length(wide)}, which is "
+            f"{unit.format_length(seating.capture_opening)} from where {ways.hold} the part. Put the part in "
             f"its place and {ways.close}: on the way it cannot get to another place."
         ]
     words.append(
-        f"When the part is in its place, the {setting.name} is {unit.text(setting.length)}. While "
+        f"When the part is in its place, the {setting.name} is {unit.format_length(setting.length)}. While "
         f"it is {more}, the part is stuck short of its place."
     )
     if seating.drop_room is not None and not seating.is_untold:
         words.append(
-            f"{ways.done} this far, there is about {unit.text(seating.drop_room)} of room at every "
+            f"{ways.done} this far, there is about {unit.format_length(seating.drop_room)} of room at every "
             "peg at once."
         )
     if seating.cage is not None and seating.placing is not None:
@@ -242,7 +242,7 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
             f"The part may lie off its place by {low:.2f} to {high:.2f} degrees and by {along} "
             f"{unit.abbreviation} along the {ways.whose} way, {across} {unit.abbreviation} across it, "
             "as far as the pegs let it.",
-            f"If every point of the part is nearer than {unit.text(seating.placing)} to its place, "
+            f"If every point of the part is nearer than {unit.format_length(seating.placing)} to its place, "
             "the part settles there.",
         ]
     tap = (
@@ -254,14 +254,14 @@ def setting_words(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
     return words
 
 
-def wrong_words(
+def describe_wrong_seats(
     seating: Seating, seats: list[Seat], opened: float | None, gauge: Gauge, unit: Unit
 ) -> list[str]:
     wrong = [one for one in seats if one.is_wrong]
     alike = sum(one.same_place and not one.is_own for one in seats)
     words = []
     if seating.capture_opening is not None and opened is not None and opened < seating.capture_opening:
-        far = f"{gauge.ways.done} by {unit.text(opened)}"
+        far = f"{gauge.ways.done} by {unit.format_length(opened)}"
         words.append(
             f"{far}, a part let go near its place reaches no other place; a part let go elsewhere may."
         )
@@ -273,7 +273,7 @@ def wrong_words(
         places = "one wrong place" if len(wrong) == 1 else f"{len(wrong)} wrong places"
         words.append(
             f"The part can come to rest in {places}; the reading nearest to the right one is "
-            f"{unit.text(abs(near.difference))} {('more' if more else 'less')}."
+            f"{unit.format_length(abs(near.difference))} {('more' if more else 'less')}."
         )
     if alike:
         words.append(

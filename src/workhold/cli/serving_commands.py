@@ -21,15 +21,15 @@ import typer
 import typer.completion
 from attrs import frozen
 
-from workhold.cli.commands import flag, option, spread
-from workhold.cli.values import choice, positive_number, whole_number
+from workhold.cli.commands import make_flag, make_option, spread_option_groups
+from workhold.cli.values import read_choice, read_positive_number, read_whole_number
 from workhold.errors import InputError, lacks_memory
 from workhold.version import __version__
 
 if TYPE_CHECKING:
     from workhold.web.guard import ServerLimits
 
-__all__ = ["completion", "mcp", "outcome", "serve"]
+__all__ = ["completion", "mcp", "run_tool", "serve"]
 
 LIMITS = "Limits"
 HIGHEST_PORT = 65_535
@@ -57,31 +57,33 @@ def limit(default: str | None, metavar: str, variable: str, help: str) -> Any:
 class ServerWords:
     """The options of where a server listens and to whom, as typed."""
 
-    host: str = option(
+    host: str = make_option(
         None, "ADDRESS", "Address to listen at; 0.0.0.0 lets other machines in.", default="127.0.0.1"
     )
-    port: str = option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000")
-    open_: bool = flag(None, "Open the page in the browser.", "--open")
-    allow_host: list[str] | None = option(
+    port: str = make_option(None, "PORT", "Port to listen at; 0 takes a free one.", default="8000")
+    open_: bool = make_flag(None, "Open the page in the browser.", "--open")
+    allow_host: list[str] | None = make_option(
         None, "NAME", "Another name by which clients may call the server. May be repeated."
     )
-    trust_proxy: list[str] | None = option(
+    trust_proxy: list[str] | None = make_option(
         None, "ADDRESS", "A reverse proxy whose word for the visitor's address is trusted. May be repeated."
     )
-    allow_origin: list[str] | None = option(
+    allow_origin: list[str] | None = make_option(
         None,
         "ORIGIN",
         "A site whose pages may use the server, such as https://shop.example. May be repeated.",
     )
-    ask_token: bool = flag(None, "Let in only those who have the address that is printed.", "--ask-token")
+    ask_token: bool = make_flag(
+        None, "Let in only those who have the address that is printed.", "--ask-token"
+    )
 
-    def port_number(self) -> int:
-        at = whole_number("--port", self.port)
+    def read_port(self) -> int:
+        at = read_whole_number("--port", self.port)
         if not 0 <= at <= HIGHEST_PORT:
             raise InputError(f"--port {self.port} is no port: give a number from 0 to {HIGHEST_PORT}.")
         return at
 
-    def proxies(self) -> list[str]:
+    def read_proxies(self) -> list[str]:
         """Return the proxies that are trusted; refuse what is no address."""
         for proxy in self.trust_proxy or ():
             try:
@@ -120,20 +122,20 @@ class LimitWords:
     fixtures: str = limit("300000", "N", "FIXTURES", "Most fixtures kept of a search, the best ones.")
     life: str = limit("60", "MINUTES", "LIFE", "Time that a search is kept after its last use.")
 
-    def asked(self) -> ServerLimits:
-        """The limits of the server; refuses what is no number, and counts that are too small or too large."""
-        upload_size = int(1e6 * positive_number("--upload-size", self.upload_size))
-        searches = int(positive_number("--searches", self.searches))
-        seconds = positive_number("--seconds", self.seconds)
-        fixtures = int(positive_number("--fixtures", self.fixtures))
-        life = 60 * positive_number("--life", self.life)
+    def read_limits(self) -> ServerLimits:
+        """Return the limits of the server; refuse what is no number, and counts that are too small or too large."""
+        upload_size = int(1e6 * read_positive_number("--upload-size", self.upload_size))
+        searches = int(read_positive_number("--searches", self.searches))
+        seconds = read_positive_number("--seconds", self.seconds)
+        fixtures = int(read_positive_number("--fixtures", self.fixtures))
+        life = 60 * read_positive_number("--life", self.life)
         if searches < 1 or fixtures < 1:
             raise InputError("--searches and --fixtures are numbers: give 1 or more.")
         if searches > MOST_SEARCHES:
             raise InputError(
                 f"--searches {searches:,} is beyond {MOST_SEARCHES}: one for each processor is best."
             )
-        from workhold.web.guard import ServerLimits, usual_memory
+        from workhold.web.guard import ServerLimits, compute_usual_memory
 
         return ServerLimits(
             upload_bytes=upload_size,
@@ -141,13 +143,13 @@ class LimitWords:
             seconds=seconds,
             fixtures=fixtures,
             life_seconds=life,
-            memory_bytes=usual_memory(searches)
+            memory_bytes=compute_usual_memory(searches)
             if self.memory is None
-            else int(positive_number("--memory", self.memory)) << 20,
+            else int(read_positive_number("--memory", self.memory)) << 20,
         )
 
 
-@spread
+@spread_option_groups
 def serve(*, words: ServerWords, limits: LimitWords) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 
@@ -156,11 +158,11 @@ def serve(*, words: ServerWords, limits: LimitWords) -> None:
 
     Example: workhold serve --open
     """
-    port, most, proxies = words.port_number(), limits.asked(), words.proxies()
-    from workhold.web.origins import checked_origin
+    port, most, proxies = words.read_port(), limits.read_limits(), words.read_proxies()
+    from workhold.web.origins import check_origin
     from workhold.web.serve import run_server
 
-    origins = [checked_origin(one) for one in words.allow_origin or ()]
+    origins = [check_origin(one) for one in words.allow_origin or ()]
     token = token_urlsafe(TOKEN_BYTES) if words.ask_token else None
     names = words.allow_host or ()
     run_server(words.host, port, most, names, proxies, token, words.announce, prepare, origins)
@@ -207,7 +209,7 @@ def mcp() -> None:
     import anyio
 
     async def serve(folder: Path) -> None:
-        server = tool_server(folder)
+        server = make_tool_server(folder)
         async with stdio_server() as (incoming, outgoing):
             await server.run(incoming, outgoing, server.create_initialization_options())
 
@@ -215,7 +217,7 @@ def mcp() -> None:
         anyio.run(serve, Path(folder))
 
 
-def tool_server(folder: Path) -> Any:
+def make_tool_server(folder: Path) -> Any:
     """Make the server of the tools; results for which no file is named are written into the folder."""
     import mcp_types as types
     from anyio import get_cancelled_exc_class
@@ -235,7 +237,7 @@ def tool_server(folder: Path) -> Any:
     async def call_tool(context: Any, asked: types.CallToolRequestParams) -> types.CallToolResult:
         cancel = Event()
         try:
-            work = partial(outcome, asked.name, asked.arguments, folder, cancel)
+            work = partial(run_tool, asked.name, asked.arguments, folder, cancel)
             data, picture, failed = await run_sync(work, abandon_on_cancel=True)
         except get_cancelled_exc_class():
             cancel.set()
@@ -251,23 +253,23 @@ def tool_server(folder: Path) -> Any:
     return Server("workhold", version=__version__, instructions=INSTRUCTIONS, **tools)
 
 
-def outcome(
+def run_tool(
     name: str, arguments: dict[str, Any] | None, folder: Path, cancel: Event
 ) -> tuple[dict[str, Any] | str, str | None, bool]:
     """Run a tool; return its data or a sentence, its picture as PNG in base 64, and whether it failed."""
-    from workhold.cli.agent_arguments import checked_arguments
+    from workhold.cli.agent_arguments import check_arguments
     from workhold.cli.agent_tools import TOOLS
 
     try:
         if name not in TOOLS:
             raise InputError(f"there is no tool {name[:40]!r}: the tools are {', '.join(TOOLS)}.")
         tool = TOOLS[name]
-        answer = tool.run(checked_arguments(tool.arguments, arguments), folder, cancel)
+        answer = tool.run(check_arguments(tool.arguments, arguments), folder, cancel)
         if answer.picture is None:
             return answer.data, None, False
-        from workhold.drawing.render import svg_to_png
+        from workhold.drawing.render import convert_svg_to_png
 
-        return answer.data, b64encode(svg_to_png(answer.picture, WIDTH)).decode("ascii"), False
+        return answer.data, b64encode(convert_svg_to_png(answer.picture, WIDTH)).decode("ascii"), False
     except InputError as error:
         return str(error), None, True
     except Exception as error:
@@ -290,7 +292,7 @@ def completion(shell: Annotated[str, typer.Argument(metavar="SHELL", help="bash,
 
     Example: workhold completion bash
     """
-    name = choice("the shell", shell, SHELLS)
+    name = read_choice("the shell", shell, SHELLS)
     script = typer.completion.get_completion_script(  # type: ignore[attr-defined]
         prog_name="workhold", complete_var=VARIABLE, shell=name
     )

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
-from workhold.cli.commands import flag, option, print_remark
+from workhold.cli.commands import make_flag, make_option, print_remark
 from workhold.cli.outputs import STANDARD_OUTPUT, refuse_output
-from workhold.cli.support_words import stopped_words, supported_within
+from workhold.cli.support_words import describe_stopped_search, find_supports_within_limit
 from workhold.errors import InputError
 from workhold.units import Unit
 
@@ -28,16 +28,16 @@ if TYPE_CHECKING:
 __all__ = [
     "PART_FILE",
     "BodyWords",
-    "asked_models",
-    "chosen_of_file",
-    "chosen_supports",
-    "first_sheet",
-    "first_side_of",
+    "list_asked_model_files",
+    "choose_supports_from_file",
+    "choose_best_supports",
+    "write_first_sheet",
+    "find_first_side",
     "refuse_sheet",
     "write_bodies",
 ]
 
-PART_FILE = option(
+PART_FILE = make_option(
     None,
     "FILE",
     "The STEP file that the result was designed from, so that the GLB and STEP show the part's own shape, "
@@ -50,29 +50,29 @@ PART_FILE = option(
 class BodyWords:
     """The options of a set-up in three dimensions, as typed; None for those not given."""
 
-    glb: str | None = option(
+    glb: str | None = make_option(
         None, "FILE", "Write it in three dimensions into this file, whose name ends in .glb."
     )
-    step: str | None = option(
+    step: str | None = make_option(
         None, "FILE", "The same as a STEP assembly, for CAD and CAM; its name ends in .step."
     )
-    supports: bool = flag(
+    supports: bool = make_flag(
         None,
         "Add the best three supports under the part and a clamp on top, of the usual sizes, to "
         "the GLB and STEP.",
         "--supports",
     )
-    thickness: str | None = option(
+    thickness: str | None = make_option(
         None,
         "LENGTH",
         "Height of the part in the GLB and STEP; that of its solid, or 10 mm, if not given.",
     )
     part: str | None = PART_FILE
 
-    def models(self, inputs: Sequence[str | None], force: bool) -> list[Path]:
+    def list_given_model_files(self, inputs: Sequence[str | None], force: bool) -> list[Path]:
         """Return the files to write; refuse an option of them where there are none."""
         of_files = {"thickness": self.thickness, "supports": self.supports, "part": self.part}
-        return asked_models(self.glb, self.step, (*inputs, self.part), force, **of_files)
+        return list_asked_model_files(self.glb, self.step, (*inputs, self.part), force, **of_files)
 
 
 PAPER = (".pdf", ".svg", ".png")
@@ -80,7 +80,7 @@ PAPER = (".pdf", ".svg", ".png")
 MOST_ASKED = 200
 
 
-def asked_models(
+def list_asked_model_files(
     glb: str | None, step: str | None, inputs: Sequence[str | None], force: bool, **of_files: object
 ) -> list[Path]:
     """Return the paths of the GLB and STEP files asked for.
@@ -107,7 +107,7 @@ def asked_models(
 
 
 def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
-    """Write a set-up as GLB and STEP files, and says what the part was taken to be."""
+    """Write a set-up as GLB and STEP files, and say what the part was taken to be."""
     for path in paths:
         assembly.write(path)
     if not paths:
@@ -115,7 +115,7 @@ def write_bodies(assembly: Assembly, paths: Sequence[Path], unit: Unit) -> None:
     files, sizes = " and ".join(map(str, paths)), assembly.sizes
     if sizes.is_assumed:
         print_remark(
-            f"in {files} the part is taken to be {unit.text(sizes.thickness)} high, because no "
+            f"in {files} the part is taken to be {unit.format_length(sizes.thickness)} high, because no "
             "thickness is given: give --thickness."
         )
     if assembly.is_simplified:
@@ -137,7 +137,7 @@ def refuse_sheet(sheet: str | None, inputs: Iterable[str | None], out: str | Non
     refuse_output(path, inputs, force)
 
 
-def first_sheet(
+def write_first_sheet(
     result: Result,
     sheet: str,
     out: str | None,
@@ -146,7 +146,7 @@ def first_sheet(
     before: str | None,
     supported: Sequence[Supports] = (),
 ) -> int | None:
-    """Write the sheet of the first choice and returns its rank; None where there is no fixture.
+    """Write the sheet of the first choice and return its rank; None where there is no fixture.
 
     The hash of ``out``, the file of the result, stands on the sheet. The part's thickness in mm is given
     where supports are wanted. Then the first choice is the first that has some; ``supported`` are those of
@@ -159,22 +159,23 @@ def first_sheet(
         return None
     rank, supports = 1, None
     if thickness is not None:
-        rank, supports = first_supported(result, thickness, supported)
+        rank, supports = find_first_supported(result, thickness, supported)
     settings = {
         "day": date.today(),
         "unit": unit,
         "thickness": thickness,
         "supports": supports,
-        "first_side": None if before is None else first_side_of(result, rank, before),
+        "first_side": None if before is None else find_first_side(result, rank, before),
     }
     write_paper(sheet, result, rank, None if out == STANDARD_OUTPUT else out, settings)
     return rank
 
 
-def first_supported(
+def find_first_supported(
     result: Result, thickness: float, supported: Sequence[Supports]
 ) -> tuple[int, ChosenSupports | None]:
-    """The rank of the best fixture that three supports hold up, and these; the first one where none has any.
+    """Return the rank of the best fixture that three supports hold up, and these; the first one where none
+    has any.
 
     Supports that are known already go before others, and larger pads before smaller ones.
     """
@@ -188,7 +189,7 @@ def first_supported(
         # Fixtures that are alike stand in other holes, which three supports may find room between.
         fixtures = [result[k] for k in range(min(len(result), MOST_ASKED))]
         requests = try_smaller_requests(query, thickness)
-        found, _ = supported_within(
+        found, _ = find_supports_within_limit(
             fixtures,
             query,
             requests,
@@ -197,7 +198,7 @@ def first_supported(
             drops_weak_force=True,
         )
         if found[-1].stopped:
-            print_remark(stopped_words(len(found), len(fixtures)))
+            print_remark(describe_stopped_search(len(found), len(fixtures)))
     for rank, one in enumerate(found, 1):
         if one.triples:
             if rank > 1:
@@ -210,10 +211,10 @@ def first_supported(
     return 1, None
 
 
-def chosen_of_file(
+def choose_supports_from_file(
     path: str, number: int, settings: dict[str, Any], loads: Sequence[Load] | None
 ) -> ChosenSupports:
-    """The set of three of a number in a file of supports; refuses what the file has decided already."""
+    """Return the set of three of a number in a file of supports; refuse what the file has decided already."""
     from workhold.files.supports_file import read_supports
     from workhold.model.support_triples import ChosenSupports
 
@@ -227,7 +228,7 @@ def chosen_of_file(
     return ChosenSupports.of(read_supports(path), number)
 
 
-def chosen_supports(
+def choose_best_supports(
     result: Result,
     rank: int,
     thickness: float | None,
@@ -257,7 +258,7 @@ def chosen_supports(
     return ChosenSupports.of(found)
 
 
-def first_side_of(result: Result, rank: int, before: str) -> FirstSide:
+def find_first_side(result: Result, rank: int, before: str) -> FirstSide:
     """Return what a fixture shares with the best fixture of another result, whose part had another side up.
 
     Refuses parts that are not of one solid.

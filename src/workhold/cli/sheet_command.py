@@ -10,15 +10,21 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.sheet import SUPPORTS, SheetQuestion
-from workhold.cli.commands import flag, option, spread
-from workhold.cli.declared import one_flag, one_word, options_of, read_words, several_words
-from workhold.cli.options import SHOWN_UNIT, asked_rank, result_with
+from workhold.cli.commands import make_flag, make_option, spread_option_groups
+from workhold.cli.declared import (
+    make_flag_attribute,
+    make_list_attribute,
+    make_option_attributes,
+    make_word_attribute,
+    read_words,
+)
+from workhold.cli.options import SHOWN_UNIT, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_written, refuse_output
-from workhold.cli.search_options import LOAD, LOADS_FILE, asked_loads
-from workhold.cli.setup_sheets import chosen_of_file, chosen_supports, first_side_of
-from workhold.cli.values import length_unit, printed_unit
+from workhold.cli.search_options import LOAD, LOADS_FILE, read_asked_loads
+from workhold.cli.setup_sheets import choose_best_supports, choose_supports_from_file, find_first_side
+from workhold.cli.values import choose_printed_unit, read_unit
 from workhold.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,13 +34,13 @@ if TYPE_CHECKING:
 
 __all__ = ["sheet"]
 
-OF_SHEET = declarations_of(SheetQuestion)
-WITH_SUPPORTS = flag(
+OF_SHEET = list_declarations(SheetQuestion)
+WITH_SUPPORTS = make_flag(
     SUPPORTS,
     "Show the best three supports under the part and a clamp on top, of the usual sizes.",
     "--supports",
 )
-FIRST_SETUP = option(
+FIRST_SETUP = make_option(
     SUPPORTS,
     "RESULT",
     "For a solid's second side: the result of the first; the sheet then names the faces that "
@@ -43,11 +49,11 @@ FIRST_SETUP = option(
 
 
 @frozen(
-    these=options_of(
+    these=make_option_attributes(
         OF_SHEET,
-        support_height={"supports": one_flag(WITH_SUPPORTS)},
-        seating={"first_setup": one_word(FIRST_SETUP)},
-        jaw_force={"load": several_words(LOAD), "loads": one_word(LOADS_FILE)},
+        support_height={"supports": make_flag_attribute(WITH_SUPPORTS)},
+        seating={"first_setup": make_word_attribute(FIRST_SETUP)},
+        jaw_force={"load": make_list_attribute(LOAD), "loads": make_word_attribute(LOADS_FILE)},
     )
 )
 class SheetWords:
@@ -91,7 +97,7 @@ class SheetTask:
         return self.path.suffix.lower() in MODEL_ENDINGS
 
 
-@spread
+@spread_option_groups
 def sheet(
     result_file: Annotated[
         str,
@@ -131,7 +137,7 @@ def sheet(
 
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
-    asked = parse(result_file, asked_rank(number), Path(out), words, unit)
+    asked = parse(result_file, read_rank(number), Path(out), words, unit)
     refuse_output(asked.path, (result_file, words.loads, words.first_setup), force)
     write(asked)
     print_written(json_, f"Written to {asked.path}.", asked.path)
@@ -150,11 +156,11 @@ def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str 
             f"-o {path} names no kind of setup sheet: let the name end in .pdf, .svg, .png, .dxf, .step or "
             ".csv."
         )
-    shown = length_unit(unit)
+    shown = read_unit(unit)
     settings = read_words(OF_SHEET, words, shown)
     settings["jaw"] = jaw_stiffness(settings["jaw"])
     settings["day"] = settings["day"] or date.today()
-    given = asked_loads(words.load, words.loads, shown)
+    given = read_asked_loads(words.load, words.loads, shown)
     on_supports = is_supports_file(result_file)
     for_cam = ending in MODEL_ENDINGS
     has_room = not for_cam or ending in STEP_ENDINGS
@@ -167,28 +173,29 @@ def write(asked: SheetTask) -> None:
     """Write the sheet, or the set-up for a CAM system."""
     from workhold.presenting.papers import write_model, write_paper
 
-    result, rank, beside, loads = held_by(asked)
+    result, rank, beside, loads = read_sheet_content(asked)
     settings, words = asked.settings | beside, asked.words
     if words.first_setup is not None:
-        settings["first_side"] = first_side_of(result, rank, words.first_setup)
+        settings["first_side"] = find_first_side(result, rank, words.first_setup)
     if words.seating and result[rank - 1].seating is None and result.toolkit.closes_at_once:
         from workhold.cli.warming import compile_seating
 
         compile_seating(Event())
     if asked.is_for_cam:
-        write_model(asked.path, result, rank, settings | {"unit": length_unit(asked.unit)})
+        write_model(asked.path, result, rank, settings | {"unit": read_unit(asked.unit)})
         return
-    unit: Unit = printed_unit(asked.unit, result.toolkit)
+    unit: Unit = choose_printed_unit(asked.unit, result.toolkit)
     settings |= {"loads": loads or result.query.loads, "unit": unit}
     write_paper(asked.path, result, rank, asked.result_file, settings)
 
 
-def held_by(asked: SheetTask) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
-    """The result and rank of the fixture, what stands on its sheet besides what was typed, and the loads "
-    "on it."""
+def read_sheet_content(asked: SheetTask) -> tuple[Result, int, dict[str, Any], tuple[Load, ...]]:
+    """Return the result and rank of the fixture, what stands on its sheet besides what was typed, and the
+    loads " "on it.
+    """
     settings, loads = asked.settings, asked.loads
     if asked.on_supports:
-        chosen = chosen_of_file(asked.result_file, asked.rank, settings, loads)
+        chosen = choose_supports_from_file(asked.result_file, asked.rank, settings, loads)
         beside = {
             "supports": chosen,
             "listed_as": "Supports",
@@ -197,10 +204,12 @@ def held_by(asked: SheetTask) -> tuple[Result, int, dict[str, Any], tuple[Load, 
         }
         flat = tuple(one for load in chosen.supports.loads if (one := load.planar) is not None)
         return chosen.supports.fixture.listing.result, 1, beside, flat
-    result = result_with(asked.result_file, asked.rank)
+    result = read_result_with_rank(asked.result_file, asked.rank)
     if not asked.words.supports:
         return result, asked.rank, {}, loads
-    chosen = chosen_supports(result, asked.rank, settings["thickness"], loads or None, settings["jaw_force"])
+    chosen = choose_best_supports(
+        result, asked.rank, settings["thickness"], loads or None, settings["jaw_force"]
+    )
     return result, asked.rank, {"supports": chosen}, loads
 
 

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
-from workhold.cli.commands import option, print_remark, spread
-from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
-from workhold.cli.outputs import FORCE, JSON, asked_picture, print_json, write_picture
+from workhold.cli.commands import make_option, print_remark, spread_option_groups
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
+from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
 from workhold.cli.search_options import LoadWords
-from workhold.cli.seat_command import by_hand_words, seating_words
-from workhold.cli.setup_sheets import BodyWords, chosen_supports, write_bodies
+from workhold.cli.seat_command import describe_seating, describe_steps_by_hand
+from workhold.cli.setup_sheets import BodyWords, choose_best_supports, write_bodies
 from workhold.cli.table import Table, print_tables
-from workhold.cli.values import length_unit, optional_positive_length, printed_unit
+from workhold.cli.values import choose_printed_unit, read_optional_positive_length, read_unit
 from workhold.errors import InputError
 from workhold.units import MILLIMETRE, Unit
 
@@ -66,12 +66,12 @@ class ShowTask:
         return self.pressed_by["jaw_force"], self.pressed_by["jaw"]
 
 
-@spread
+@spread_option_groups
 def show(
     result_file: ResultArgument,
     number: RankArgument,
     *,
-    draw: str | None = option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
+    draw: str | None = make_option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
     bodies: BodyWords,
     force: bool = FORCE,
     words: LoadWords,
@@ -86,7 +86,7 @@ def show(
 
     Example: workhold show part.json 1 --draw setup.png --glb setup.glb
     """
-    asked = parse(result_file, asked_rank(number), draw, bodies, force, words, unit, json_)
+    asked = parse(result_file, read_rank(number), draw, bodies, force, words, unit, json_)
     report(asked, ask(asked))
 
 
@@ -101,13 +101,13 @@ def parse(
     as_json: bool,
 ) -> ShowTask:
     """Read what was typed, and the fixture."""
-    shown = length_unit(unit)
-    pressed_by = words.asked(shown)
-    picture = asked_picture(draw, (result_file, words.loads), force)
-    models = bodies.models((result_file, words.loads), force)
-    height = optional_positive_length("--thickness", bodies.thickness, shown)
-    result = result_with(result_file, rank)
-    printed = printed_unit(unit, result.toolkit)
+    shown = read_unit(unit)
+    pressed_by = words.read_arguments(shown)
+    picture = read_picture_path(draw, (result_file, words.loads), force)
+    models = bodies.list_given_model_files((result_file, words.loads), force)
+    height = read_optional_positive_length("--thickness", bodies.thickness, shown)
+    result = read_result_with_rank(result_file, rank)
+    printed = choose_printed_unit(unit, result.toolkit)
     return ShowTask(
         result,
         rank,
@@ -153,12 +153,12 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
     if not asked.as_json:
         print_tables(*(f"Drawn in {path}." for path in written))
         return
-    from workhold.presenting.data import fixture_data, load_case_data
+    from workhold.presenting.data import describe_fixture, load_case_data
 
     print_json(
-        fixture=fixture_data(asked.fixture, result.toolkit, rank),
-        **passing_data(result, rank, *asked.closing),
-        **({} if asked.fixture.hold is not None else bending_data(result, rank, asked.closing[0])),
+        fixture=describe_fixture(asked.fixture, result.toolkit, rank),
+        **list_program_clearances(result, rank, *asked.closing),
+        **({} if asked.fixture.hold is not None else convert_bending_to_data(result, rank, asked.closing[0])),
         listed=len(result),
         complete=bool(result.complete),
         loads=[load_case_data(case) for case in cases],
@@ -167,22 +167,22 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
 
 
 def write(asked: ShowTask) -> list[Path]:
-    """Write the picture and the bodies that were asked for; returns their paths."""
+    """Write the picture and the bodies that were asked for; return their paths."""
     result, rank, fixture, picture = asked.result, asked.rank, asked.fixture, asked.picture
     if picture is not None:
         from workhold.drawing.fixture_pictures import draw_fixture
-        from workhold.drawing.path_drawn import planned_path
+        from workhold.drawing.path_drawn import make_planned_path
 
-        held, path = (fixture, result.workpiece, result.toolkit), planned_path(result, rank - 1)
+        held, path = (fixture, result.workpiece, result.toolkit), make_planned_path(result, rank - 1)
         write_picture(picture, draw_fixture(*held, title=f"Fixture {rank}", unit=asked.printed, path=path))
     if asked.models:
-        from workhold.presenting.assembly import Assembly, shape_in
+        from workhold.presenting.assembly import Assembly, read_part_shape
 
-        shape, chosen = shape_in(asked.part, result.workpiece), None
+        shape, chosen = read_part_shape(asked.part, result.workpiece), None
         if asked.on_supports:
             loads, force = asked.pressed_by["loads"] or None, asked.pressed_by["jaw_force"]
-            chosen = chosen_supports(result, rank, asked.height, loads, force)
-        assembly = Assembly.of(fixture, result, {"thickness": asked.height}, chosen, shape)
+            chosen = choose_best_supports(result, rank, asked.height, loads, force)
+        assembly = Assembly.from_fixture(fixture, result, {"thickness": asked.height}, chosen, shape)
         write_bodies(assembly, asked.models, asked.unit)
     return [*([] if picture is None else [picture]), *asked.models]
 
@@ -194,31 +194,36 @@ def print_fixture(
 
     ``closing`` is the jaw force in N, None where it is open, and how stiff the jaw is.
     """
-    from workhold.cli.tables import first_sentence, fixture_tables, quality_table, standing_sentences
-    from workhold.presenting.figure_words import no_edge
+    from workhold.cli.tables import (
+        describe_part_overhang,
+        explain_first_fixture,
+        tabulate_fixture_setup,
+        tabulate_quality,
+    )
+    from workhold.presenting.figure_words import find_edgeless_distance
 
     fixture, toolkit = result[rank - 1], result.toolkit
     if fixture.hold is not None:
-        print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit))
+        print_tables(*tabulate_fixture_setup(fixture, toolkit, rank, len(result), unit))
         return
-    force, longest = result.query.jaw_force, no_edge(result.workpiece, toolkit)
-    quality = quality_table(fixture, toolkit.moving.noun, unit, force, longest)
-    standing = standing_sentences(fixture, result, unit)
-    print_tables(*fixture_tables(fixture, toolkit, rank, len(result), unit), *standing, "", quality)
-    if rank == 1 and (reason := first_sentence(result, unit)):
+    force, longest = result.query.jaw_force, find_edgeless_distance(result.workpiece, toolkit)
+    quality = tabulate_quality(fixture, toolkit.moving.noun, unit, force, longest)
+    standing = describe_part_overhang(fixture, result, unit)
+    print_tables(*tabulate_fixture_setup(fixture, toolkit, rank, len(result), unit), *standing, "", quality)
+    if rank == 1 and (reason := explain_first_fixture(result, unit)):
         print_tables(reason)
     if fixture.seating is not None:
-        print_tables(*seating_words(fixture, result, unit))
+        print_tables(*describe_seating(fixture, result, unit))
     elif not toolkit.closes_at_once and rank <= (result.query.seating or 0):
-        print_tables(*by_hand_words(rank, result, unit))
+        print_tables(*describe_steps_by_hand(rank, result, unit))
     print_tables(
-        *bending_words(result, rank, unit, closing[0]),
-        *passing_words(result, rank, unit, *closing),
+        *describe_bending(result, rank, unit, closing[0]),
+        *describe_program_clearances(result, rank, unit, *closing),
         *load_tables(cases, fixture, toolkit, unit),
     )
 
 
-def bent_pegs_of(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
+def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
     """Find how far the pegs of the fixture of a rank bend, at a jaw force in N or at the result's."""
     from workhold.statics.bent_pegs import bent_pegs
 
@@ -232,12 +237,12 @@ def bent_pegs_of(result: Result, rank: int, jaw_force: float | None) -> BentPegs
     )
 
 
-def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
+def describe_bending(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
     """Say how far each peg bends, and what that moves the part by; nothing where no heights are known.
 
     The jaw force in N stands instead of the result's.
     """
-    bent = bent_pegs_of(result, rank, jaw_force)
+    bent = compute_peg_bending(result, rank, jaw_force)
     if bent is None:
         return []
     of, mover = unit.abbreviation, result.toolkit.moving.noun
@@ -257,13 +262,13 @@ def bending_words(result: Result, rank: int, unit: Unit, jaw_force: float | None
     for peg in bent.pegs:
         table.add_row(
             peg.hole,
-            unit.figure(peg.diameter),
+            unit.format_short_length(peg.diameter),
             unit.number(peg.height, unit.decimals - 1),
             f"{peg.force / unit.newtons:.0f}",
             unit.number(peg.deflection),
             unit.number(peg.worst_deflection),
-            unit.stress_number(peg.stress),
-            unit.stress_number(peg.worst_stress),
+            unit.format_stress_number(peg.stress),
+            unit.format_stress_number(peg.worst_stress),
         )
     error = result[rank - 1].figures.get("location_error")
     return [
@@ -297,16 +302,18 @@ def load_tables(
         worst = case.needed
         row = [
             case.load.name or f"load {number}",
-            unit.force_number(worst.value),
+            unit.format_force_number(worst.value),
             fixture.pegs[worst.peg].hole,
             f"({unit.number(worst.point[0])}, {unit.number(worst.point[1])})",
             f"{worst.direction:.1f}",
         ]
-        table.add_row(*row, *([unit.force_number(case.needed_with_friction or 0.0)] if with_friction else []))
+        table.add_row(
+            *row, *([unit.format_force_number(case.needed_with_friction or 0.0)] if with_friction else [])
+        )
     forces = Table(("load", *(f">{peg.hole} {unit.force}" for peg in fixture.pegs), "every peg presses"))
     for number, case in enumerate(cases, 1):
         extremes = zip(case.smallest, case.largest, strict=True)
-        ranges = (" to ".join(map(unit.force_number, both)) for both in extremes)
+        ranges = (" to ".join(map(unit.format_force_number, both)) for both in extremes)
         holds = "yes" if case.keeps_contact else "no: the part can move"
         forces.add_row(case.load.name or f"load {number}", *ranges, holds)
     notes = []
@@ -321,18 +328,18 @@ def load_tables(
         table,
         *notes,
         "",
-        f"Forces on the part at a {noun} force of {unit.force_words(cases[0].jaw_force)}:",
+        f"Forces on the part at a {noun} force of {unit.format_force(cases[0].jaw_force)}:",
         forces,
         note,
     )
 
 
-def passing_data(
+def list_program_clearances(
     result: Result, rank: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> dict[str, Any]:
     """Return where the program's tools come nearest, and which forces they ask for, as plain data.
 
-    Nothing without a program. Jaw force and jaw are as of :func:`passing_words`.
+    Nothing without a program. Jaw force and jaw are as of :func:`describe_program_clearances`.
     """
     from workhold.statics.program_clearance import find_nearest_passing
     from workhold.statics.program_forces import find_cutting_need
@@ -344,13 +351,13 @@ def passing_data(
     return data if need is None else data | {"program_forces": need.to_dict()}
 
 
-def bending_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
+def convert_bending_to_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
     """Return how far pegs bend as plain data; nothing where no heights are known."""
-    bent = bent_pegs_of(result, rank, jaw_force)
+    bent = compute_peg_bending(result, rank, jaw_force)
     return {} if bent is None else {"pins": bent.to_dict()}
 
 
-def passing_words(
+def describe_program_clearances(
     result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> list[str]:
     """Say how near the program's tools come to the fixture of a rank, and which forces they ask for.
@@ -372,7 +379,7 @@ def passing_words(
             *forces,
         ]
     return [
-        f"The tools of {program.name} keep {unit.text(near.distance)} from all that holds the part; "
+        f"The tools of {program.name} keep {unit.format_length(near.distance)} from all that holds the part; "
         f"T{near.tool} comes nearest in line {near.line}, to the {near.element}.",
         *forces,
     ]

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import option, print_remark, spread
-from workhold.cli.declared import lengths_between, read_coefficients, read_zone
+from workhold.cli.commands import make_option, print_remark, spread_option_groups
+from workhold.cli.declared import read_coefficients, read_separated_lengths, read_zone
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import JSON, print_json
-from workhold.cli.support_words import spatial_load
-from workhold.cli.supports_command import asked_thickness
+from workhold.cli.support_words import read_spatial_load
+from workhold.cli.supports_command import read_asked_thickness
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
-    length_unit,
-    optional_count,
-    optional_force,
-    optional_length,
-    positive_number,
-    printed_unit,
+    choose_printed_unit,
+    read_optional_count,
+    read_optional_force,
+    read_optional_length,
+    read_positive_number,
+    read_unit,
 )
 from workhold.errors import InputError
 
@@ -40,31 +40,33 @@ STRAPS, PART, LOADS = "Straps", "Heights of the part", "Loads"
 class StrapWords:
     """The options of straps and of what acts on the part, as typed; None for those not given."""
 
-    count: str = option(STRAPS, "K", "Number of straps, 1 to 4.", default="2")
-    tip_radius: str = option(STRAPS, "LENGTH", "Radius of a strap's round tip.", default="6mm")
-    reach: str = option(
+    count: str = make_option(STRAPS, "K", "Number of straps, 1 to 4.", default="2")
+    tip_radius: str = make_option(STRAPS, "LENGTH", "Radius of a strap's round tip.", default="6mm")
+    reach: str = make_option(
         STRAPS, "LEAST:MOST", "Distance of the tip from the middle of the bolt's hole.", default="20mm:60mm"
     )
-    strap_force: str | None = option(STRAPS, "FORCE", "What each strap is rated for, to warn of more.")
-    keep_out_above: list[str] | None = option(
+    strap_force: str | None = make_option(STRAPS, "FORCE", "What each strap is rated for, to warn of more.")
+    keep_out_above: list[str] | None = make_option(
         STRAPS, "ZONE", "A place on which no tip may stand, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
     )
-    thickness: str | None = option(PART, "LENGTH", "Thickness of the part; that of its solid if not given.")
-    load: list[str] | None = option(
+    thickness: str | None = make_option(
+        PART, "LENGTH", "Thickness of the part; that of its solid if not given."
+    )
+    load: list[str] | None = make_option(
         LOADS,
         "LOAD",
         "A load in space, as of supports; those of the result, at the part's upper side, if not given.",
     )
-    friction: str | None = option(
+    friction: str | None = make_option(
         LOADS,
         "NAME=NUMBER",
         "Coefficients of friction of tip and plate, such as tip=0.15,plate=0.15; else usual ones.",
     )
-    safety: str | None = option(LOADS, "NUMBER", "Safety factor on the loads; 2 if not given.")
-    weight: str | None = option(LOADS, "FORCE", "Weight of the part; it helps where it is given.")
+    safety: str | None = make_option(LOADS, "NUMBER", "Safety factor on the loads; 2 if not given.")
+    weight: str | None = make_option(LOADS, "FORCE", "Weight of the part; it helps where it is given.")
 
 
-@spread
+@spread_option_groups
 def straps(
     result_file: ResultArgument,
     number: RankArgument,
@@ -84,12 +86,12 @@ def straps(
     from workhold.supports.straps import find_straps
     from workhold.supports.words_of_straps import list_warnings
 
-    rank, shown = asked_rank(number), length_unit(unit)
-    result = result_with(result_file, rank)
+    rank, shown = read_rank(number), read_unit(unit)
+    result = read_result_with_rank(result_file, rank)
     fixture, asked = result[rank - 1], read_question(words, result, shown)
     with ask_to_stop("the best straps so far are kept") as cancel:
         found = find_straps(fixture, result.query, asked, cancel)
-    printed = printed_unit(unit, result.toolkit)
+    printed = choose_printed_unit(unit, result.toolkit)
     if json_:
         print_json(rank=rank, **describe(found, fixture, asked))
     else:
@@ -108,18 +110,20 @@ def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
     from workhold.supports.straps import NO_LOADS, StrapQuestion, usual_request
 
     count, tip = (
-        optional_count("--count", words.count),
-        optional_length("--tip-radius", words.tip_radius, unit),
+        read_optional_count("--count", words.count),
+        read_optional_length("--tip-radius", words.tip_radius, unit),
     )
     assert count is not None
     assert tip is not None
-    least, most = lengths_between("--reach", words.reach, ":", 2, unit)
-    hardware = StrapHardware(count, tip, (least, most), optional_force("--strap-force", words.strap_force))
-    high = asked_thickness(True, words.thickness, result.workpiece, unit)
+    least, most = read_separated_lengths("--reach", words.reach, ":", 2, unit)
+    hardware = StrapHardware(
+        count, tip, (least, most), read_optional_force("--strap-force", words.strap_force)
+    )
+    high = read_asked_thickness(True, words.thickness, result.workpiece, unit)
     assert high is not None
     zones = [read_zone("--keep-out-above", text, unit) for text in words.keep_out_above or ()]
     loads = (
-        [spatial_load(text, high, unit) for text in words.load]
+        [read_spatial_load(text, high, unit) for text in words.load]
         if words.load
         else [SpatialLoad.of(load) for load in result.query.loads]
     )
@@ -130,13 +134,13 @@ def read_question(words: StrapWords, result: Any, unit: Unit) -> StrapQuestion:
         usual_request(result.query, high, tip, zones),
         tuple(loads),
         coefficients_of(None if words.friction is None else read_coefficients("--friction", words.friction)),
-        SAFETY if words.safety is None else positive_number("--safety", words.safety),
-        optional_force("--weight", words.weight) or 0.0,
+        SAFETY if words.safety is None else read_positive_number("--safety", words.safety),
+        read_optional_force("--weight", words.weight) or 0.0,
     )
 
 
 def describe(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> dict[str, Any]:
-    """Data for other programs."""
+    """Return the data for other programs."""
     from workhold.model.friction import COUNTED_BY_STRAPS, find_friction_coefficient
 
     return {
@@ -157,7 +161,7 @@ def tabulate(
     found: StrappedHold, fixture: Fixture, rank: int, asked: StrapQuestion, unit: Unit
 ) -> list[Table | str]:
     """Say how to set the straps up, and what each load asks for."""
-    from workhold.presenting.figure_words import rounded
+    from workhold.presenting.figure_words import format_rounded
     from workhold.supports.words_of_straps import list_steps, reckoned_with
 
     short = unit.abbreviation
@@ -172,7 +176,7 @@ def tabulate(
     if found.clamp_needed_each:
         needs = Table((">load", "name", f">force of each strap {unit.force}"))
         for number, (load, need) in enumerate(zip(asked.loads, found.clamp_needed_each, strict=True), 1):
-            text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
+            text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
             needs.add_row(str(number), load.name, text)
         out += ["", reckoned_with(asked), needs]
     return out

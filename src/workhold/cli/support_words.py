@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from workhold.cli.progress import progress_bar
+from workhold.cli.progress import show_progress
 from workhold.cli.search_options import parse_load
-from workhold.cli.table import plural
+from workhold.cli.table import format_count
 from workhold.cli.values import number
 from workhold.errors import InputError
 
@@ -20,29 +20,30 @@ if TYPE_CHECKING:
     from workhold.units import Unit
 
 __all__ = [
-    "friction_words",
-    "size_notes",
-    "spatial_load",
-    "stopped_words",
-    "supported_within",
-    "with_friction",
+    "describe_friction_gain",
+    "note_support_sizes",
+    "read_spatial_load",
+    "describe_stopped_search",
+    "find_supports_within_limit",
+    "list_clamp_forces_with_friction",
 ]
 
 # Places of pads and clamp that are looked at under several fixtures, half a minute's work.
 MOST_PLACES = 100_000_000
 
 
-def supported_within(
+def find_supports_within_limit(
     fixtures: Sequence[Fixture], query: Query, requests: Iterable[SupportRequest], **how: Any
 ) -> tuple[tuple[Supports, ...], tuple[Supports, ...]]:
-    """The best supports of some fixtures as far as a limit of the work allows, with a bar on a terminal.
+    """Return the best supports of some fixtures as far as a limit of the work allows, with a bar on a
+    terminal.
 
     For the arguments see :func:`workhold.supports.asking.support_with_smaller_sizes`.
     """
     from workhold.supports.asking import support_with_smaller_sizes
     from workhold.supports.choosing import WorkLimit
 
-    with progress_bar("Looking for supports", f"of {plural(len(fixtures), 'fixture')}") as show:
+    with show_progress("Looking for supports", f"of {format_count(len(fixtures), 'fixture')}") as show:
 
         def progress(fraction: float) -> None:
             show(fraction, int(fraction * len(fixtures)))
@@ -52,13 +53,13 @@ def supported_within(
         )
 
 
-def stopped_words(last: int, count: int) -> str:
+def describe_stopped_search(last: int, count: int) -> str:
     """Say at which fixture the search of supports was stopped, what was skipped, and how to get the rest.
 
     ``last`` is the rank of that fixture, ``count`` how many fixtures were asked for.
     """
     skipped = list(range(last + 1, count + 1))
-    rest = f", and under {runs_of(skipped)} at none" if skipped else ""
+    rest = f", and under {format_number_runs(skipped)} at none" if skipped else ""
     return (
         f"Pads and clamp have so many places that the search stopped after {MOST_PLACES:,}: under "
         f"{last} it did not look at all sets{rest}. The command supports looks at all sets under "
@@ -66,12 +67,12 @@ def stopped_words(last: int, count: int) -> str:
     )
 
 
-def runs_of(numbers: Sequence[int]) -> str:
-    """Rising numbers in words, three and more that follow one another as a range.
+def format_number_runs(numbers: Sequence[int]) -> str:
+    """Return the rising numbers in words, three and more that follow one another as a range.
 
     Examples
     --------
-    >>> runs_of([1, 3, 4, 6, 7, 8, 20])
+    >>> format_number_runs([1, 3, 4, 6, 7, 8, 20])
     '1, 3, 4, 6 to 8, 20'
     """
     runs: list[list[int]] = []
@@ -84,7 +85,7 @@ def runs_of(numbers: Sequence[int]) -> str:
     return ", ".join(words)
 
 
-def size_notes(
+def note_support_sizes(
     found: Sequence[Supports], usual: Sequence[Supports], bare: Sequence[int], unit: Unit
 ) -> list[str]:
     """Say of which sizes the supports of some fixtures are, and why some have none.
@@ -94,20 +95,23 @@ def size_notes(
     """
     from workhold.supports.words import explain_no_set
 
-    pad, tip = unit.text(found[0].request.pad_radius), unit.text(found[0].request.tip_radius)
+    pad, tip = (
+        unit.format_length(found[0].request.pad_radius),
+        unit.format_length(found[0].request.tip_radius),
+    )
     if len(bare) == len(found):
-        larger = unit.text(usual[0].request.pad_radius)
+        larger = unit.format_length(usual[0].request.pad_radius)
         sizes = f"pads of radius {pad}" if found is usual else f"pads of radius {larger} down to {pad}"
         which = "usual" if found is usual else "least"
         return [
-            f"Under {runs_of(bare)} no three supports hold the part, with {sizes}.",
+            f"Under {format_number_runs(bare)} no three supports hold the part, with {sizes}.",
             f"Under {bare[0]}, with the {which} sizes: {explain_no_set(found[0], unit)}",
         ]
     notes = [
         f"Pads of radius {pad} and a tip of radius {tip}; the command supports lists more, with other sizes."
     ]
     if bare:
-        notes.append(f"Under {runs_of(bare)} no three supports hold the part.")
+        notes.append(f"Under {format_number_runs(bare)} no three supports hold the part.")
     if found is not usual:
         notes.append(
             "Larger pads and tips hold the part under none of these fixtures. Under 1: "
@@ -118,8 +122,11 @@ def size_notes(
     return notes
 
 
-def with_friction(found: Supports, count: int | None, friction: float | None) -> list[float]:
-    """The least clamp forces in N with friction, of the sets that are listed; none where it is not asked for.
+def list_clamp_forces_with_friction(
+    found: Supports, count: int | None, friction: float | None
+) -> list[float]:
+    """Return the least clamp forces in N with friction, of the sets that are listed; none where it is not
+    asked for.
 
     Refuses a coefficient that is too large, and one where there is no load.
     """
@@ -130,12 +137,12 @@ def with_friction(found: Supports, count: int | None, friction: float | None) ->
     return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
 
 
-def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
+def describe_friction_gain(friction: float, helped: list[float], unit: Unit) -> str:
     """Say what friction could add to the sets that are listed.
 
     ``helped`` are their least clamp forces in N.
     """
-    forces = ", ".join(unit.force_words(force) for force in helped)
+    forces = ", ".join(unit.format_force(force) for force in helped)
     sets = "that set" if len(helped) == 1 else "these sets, in their order,"
     return (
         f"With a friction of {friction:g} at every contact the clamp of {sets} could hold with "
@@ -144,7 +151,7 @@ def friction_words(friction: float, helped: list[float], unit: Unit) -> str:
     )
 
 
-def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
+def read_spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
     """Return a load with its heights, its axial force and what tilts, from the text of ``--load``."""
     from workhold.model.support_request import SpatialLoad
 
@@ -161,7 +168,7 @@ def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
         planar = parse_load(" ".join(rest if acts else [*rest, "force=1"]), unit.millimetres)
     except InputError as error:
         raise InputError(str(error).replace(" force=1", "")) from error
-    heights = ranged(place, own.get("z"), (thickness, thickness))
+    heights = read_number_range(place, own.get("z"), (thickness, thickness))
     scale = unit.millimetres
     tilt = own.get("tilt", "0,0").split(",")
     if len(tilt) != 2:
@@ -171,14 +178,14 @@ def spatial_load(text: str, thickness: float, unit: Unit) -> SpatialLoad:
         heights=(heights[0] * scale, heights[1] * scale) if "z" in own else heights,
         force=planar.force if acts else 0.0,
         directions=planar.directions,
-        axial=ranged(place, own.get("axial"), (0.0, 0.0)),
+        axial=read_number_range(place, own.get("axial"), (0.0, 0.0)),
         moment=planar.moment,
         tilt=(number(tilt[0]), number(tilt[1])),
         name=planar.name,
     )
 
 
-def ranged(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
+def read_number_range(place: str, text: str | None, usual: tuple[float, float]) -> tuple[float, float]:
     """Return one number or a range LOW..HIGH."""
     if text is None:
         return usual

@@ -8,37 +8,37 @@ from typing import TYPE_CHECKING, Any, TextIO
 import typer
 from attrs import asdict, frozen
 
-from workhold.cli.commands import option, print_remark, spread
+from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.declared import (
-    lengths_between,
-    one_word,
-    options_of,
+    make_list_attribute,
+    make_option_attributes,
+    make_word_attribute,
+    read_separated_lengths,
     read_words,
     read_zone,
-    several_words,
 )
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
-from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
-from workhold.cli.progress import progress_bar
+from workhold.cli.progress import show_progress
 from workhold.cli.search_options import FRICTION, JAW_FORCE
-from workhold.cli.setup_sheets import PART_FILE, asked_models, write_bodies
+from workhold.cli.setup_sheets import PART_FILE, list_asked_model_files, write_bodies
 from workhold.cli.support_words import (
-    friction_words,
-    size_notes,
-    spatial_load,
-    stopped_words,
-    supported_within,
-    with_friction,
+    describe_friction_gain,
+    describe_stopped_search,
+    find_supports_within_limit,
+    list_clamp_forces_with_friction,
+    note_support_sizes,
+    read_spatial_load,
 )
 from workhold.cli.table import Table, print_tables
 from workhold.cli.values import (
-    length_unit,
-    optional_count,
-    optional_force,
-    optional_length,
-    positive_number,
-    printed_unit,
+    choose_printed_unit,
+    read_optional_count,
+    read_optional_force,
+    read_optional_length,
+    read_positive_number,
+    read_unit,
 )
 from workhold.errors import InputError
 from workhold.fixels.support_hardware import CLAMP, CLAMP_SECTION, PADS, SUPPORTS_SECTION
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
     from workhold.units import Unit
 
-__all__ = ["asked_thickness", "report_supported", "supports"]
+__all__ = ["read_asked_thickness", "report_supported", "supports"]
 
 # Fixtures for which a search looks for supports.
 MOST_SUPPORTED = 20
@@ -62,27 +62,27 @@ KEEP_OFF = ("--keep-out-below", "--keep-out-above")
 PART = "Heights of the part"
 
 
-THICKNESS = option(PART, "LENGTH", "Thickness of the part; that of its solid if not given.")
-BAND = option(
+THICKNESS = make_option(PART, "LENGTH", "Thickness of the part; that of its solid if not given.")
+BAND = make_option(
     PART,
     "LOW:HIGH",
     "Heights at which pegs may press on the part's faces; those of its solid, or all, if not given.",
 )
-BELOW = option(
+BELOW = make_option(
     SUPPORTS_SECTION, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."
 )
-ABOVE = option(
+ABOVE = make_option(
     CLAMP_SECTION, "ZONE", "A place on which the tip may not stand, such as where the cutter goes."
 )
-CLAMP_AT = option(CLAMP_SECTION, "X,Y", "Place of the clamp; the best one if not given.")
-LOADS_IN_SPACE = option(
+CLAMP_AT = make_option(CLAMP_SECTION, "X,Y", "Place of the clamp; the best one if not given.")
+LOADS_IN_SPACE = make_option(
     "Loads",
     "LOAD",
     "A load as in show, with these words besides: z=HEIGHT or z=LOW..HIGH, axial=FORCE or "
     "axial=LOW..HIGH downward, and tilt=ABOUTX,ABOUTY. If not given, the loads of the result "
     "act at the part's upper side.",
 )
-SUPPORT_HEIGHT = option(
+SUPPORT_HEIGHT = make_option(
     SUPPORTS_SECTION,
     "LENGTH",
     "Standout of the supports above the plates, in --glb and --step; the toolkit's, or 10mm, if not given.",
@@ -92,15 +92,18 @@ OF_HARDWARE = [row for table in (PADS, CLAMP) for row in table.fields if row.typ
 
 
 @frozen(
-    these=options_of(
+    these=make_option_attributes(
         OF_HARDWARE,
-        pad_radius={"thickness": one_word(THICKNESS), "band": one_word(BAND)},
-        tip_radius={"keep_out_below": several_words(BELOW), "support_height": one_word(SUPPORT_HEIGHT)},
-        reach={"keep_out_above": several_words(ABOVE)},
-        clamp_at=one_word(CLAMP_AT),
-        load=several_words(LOADS_IN_SPACE),
-        jaw_force=one_word(JAW_FORCE),
-        friction=one_word(FRICTION),
+        pad_radius={"thickness": make_word_attribute(THICKNESS), "band": make_word_attribute(BAND)},
+        tip_radius={
+            "keep_out_below": make_list_attribute(BELOW),
+            "support_height": make_word_attribute(SUPPORT_HEIGHT),
+        },
+        reach={"keep_out_above": make_list_attribute(ABOVE)},
+        clamp_at=make_word_attribute(CLAMP_AT),
+        load=make_list_attribute(LOADS_IN_SPACE),
+        jaw_force=make_word_attribute(JAW_FORCE),
+        friction=make_word_attribute(FRICTION),
     )
 )
 class SupportWords:
@@ -117,15 +120,15 @@ class SupportWords:
         jaw_force: str | None
         friction: str | None
 
-    def sizes(self, unit: Unit) -> dict[str, Any]:
+    def read_sizes(self, unit: Unit) -> dict[str, Any]:
         """Return what of a :class:`workhold.model.support_request.SupportRequest` was given."""
         own = read_words(OF_HARDWARE, self, unit) | {
-            "band": None if self.band is None else lengths_between("--band", self.band, ":", 2, unit),
+            "band": None if self.band is None else read_separated_lengths("--band", self.band, ":", 2, unit),
             "bottom_zones": [read_zone(KEEP_OFF[0], text, unit) for text in self.keep_out_below or ()],
             "top_zones": [read_zone(KEEP_OFF[1], text, unit) for text in self.keep_out_above or ()],
             "point": None
             if self.clamp_at is None
-            else lengths_between("--clamp-at", self.clamp_at, ",", 2, unit),
+            else read_separated_lengths("--clamp-at", self.clamp_at, ",", 2, unit),
         }
         return {name: value for name, value in own.items() if value is not None}
 
@@ -164,18 +167,22 @@ class SupportsTask:
         return self.result[self.rank - 1]
 
 
-@spread
+@spread_option_groups
 def supports(
     result_file: ResultArgument,
     number_: RankArgument,
     *,
     words: SupportWords,
-    triples: str = option(None, "K", "Number of sets of three to list.", default="3"),
-    out: str | None = option(None, "FILE", "Write all sets of three, with every figure, into this file."),
-    glb: str | None = option(
+    triples: str = make_option(None, "K", "Number of sets of three to list.", default="3"),
+    out: str | None = make_option(
+        None, "FILE", "Write all sets of three, with every figure, into this file."
+    ),
+    glb: str | None = make_option(
         None, "FILE", "Write the fixture on the best set in three dimensions into this .glb file."
     ),
-    step: str | None = option(None, "FILE", "The same as a STEP assembly, for CAM, into this .step file."),
+    step: str | None = make_option(
+        None, "FILE", "The same as a STEP assembly, for CAM, into this .step file."
+    ),
     part: str | None = PART_FILE,
     force: bool = FORCE,
     unit: str | None = SHOWN_UNIT,
@@ -189,15 +196,15 @@ def supports(
 
     Example: workhold supports part.json 1 --thickness 12 --load "force=150 at=20,15 z=8..12 axial=-20..60"
     """
-    rank = asked_rank(number_)
-    count = optional_count("--triples", triples)
+    rank = read_rank(number_)
+    count = read_optional_count("--triples", triples)
     if out is not None:
         refuse_output(out, (result_file,), force)
     raised = words.support_height
-    models = asked_models(glb, step, (result_file, part), force, support_height=raised, part=part)
+    models = list_asked_model_files(glb, step, (result_file, part), force, support_height=raised, part=part)
     asked = parse(result_file, rank, words, count, out, models, part, unit)
     found = ask(asked)
-    helped = with_friction(found, count, asked.friction)
+    helped = list_clamp_forces_with_friction(found, count, asked.friction)
     write(asked, found)
     written = [path for path in (out, glb, step) if path is not None]
     report(found, count, rank, written, asked.printed, json_, asked.friction, helped)
@@ -216,19 +223,19 @@ def parse(
     unit: str | None,
 ) -> SupportsTask:
     """Read what was typed, and the fixture."""
-    shown = length_unit(unit)
-    closing = optional_force("--jaw-force", words.jaw_force)
-    friction = None if words.friction is None else positive_number("--friction", words.friction)
-    raised = optional_length("--support-height", words.support_height, shown)
-    result = result_with(result_file, rank)
+    shown = read_unit(unit)
+    closing = read_optional_force("--jaw-force", words.jaw_force)
+    friction = None if words.friction is None else read_positive_number("--friction", words.friction)
+    raised = read_optional_length("--support-height", words.support_height, shown)
+    result = read_result_with_rank(result_file, rank)
     from workhold.supports.asking import try_smaller_requests
 
-    high = asked_thickness(True, words.thickness, result.workpiece, shown)
+    high = read_asked_thickness(True, words.thickness, result.workpiece, shown)
     assert high is not None
-    request, *smaller = try_smaller_requests(result.query, high, words.sizes(shown))
+    request, *smaller = try_smaller_requests(result.query, high, words.read_sizes(shown))
     request.refuse_fat_pads(result.toolkit)
-    loads = [spatial_load(text, high, shown) for text in words.load] if words.load else None
-    printed = printed_unit(unit, result.toolkit)
+    loads = [read_spatial_load(text, high, shown) for text in words.load] if words.load else None
+    printed = choose_printed_unit(unit, result.toolkit)
     return SupportsTask(
         result,
         rank,
@@ -253,7 +260,7 @@ def ask(asked: SupportsTask) -> Supports:
 
     with (
         ask_to_stop("the best of the sets so far is kept") as cancel,
-        progress_bar("Looking for supports", "of 1 fixture") as show,
+        show_progress("Looking for supports", "of 1 fixture") as show,
     ):
         (found,), _ = support_with_smaller_sizes(
             [asked.fixture],
@@ -267,8 +274,8 @@ def ask(asked: SupportsTask) -> Supports:
         )
     if found.triples and found.request.pad_radius < asked.request.pad_radius:
         pad, tip = (
-            asked.printed.text(found.request.pad_radius),
-            asked.printed.text(found.request.tip_radius),
+            asked.printed.format_length(found.request.pad_radius),
+            asked.printed.format_length(found.request.tip_radius),
         )
         print_remark(
             f"the usual sizes find no place, so the pads have a radius of {pad} and the tip one of {tip}."
@@ -285,19 +292,21 @@ def write(asked: SupportsTask, found: Supports) -> None:
     if not asked.models:
         return
     from workhold.model.support_triples import ChosenSupports
-    from workhold.presenting.assembly import Assembly, shape_in
+    from workhold.presenting.assembly import Assembly, read_part_shape
 
     if not found.triples:
         from workhold.supports.words import explain_no_set
 
         why = explain_no_set(found, asked.printed)
         raise InputError(f"{why[:1].lower()}{why[1:]}")
-    best, shape = ChosenSupports.of(found), shape_in(asked.part, asked.result.workpiece)
+    best, shape = ChosenSupports.of(found), read_part_shape(asked.part, asked.result.workpiece)
     lengths = {"support_height": asked.raised}
-    write_bodies(Assembly.of(asked.fixture, asked.result, lengths, best, shape), asked.models, asked.unit)
+    write_bodies(
+        Assembly.from_fixture(asked.fixture, asked.result, lengths, best, shape), asked.models, asked.unit
+    )
 
 
-def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
+def read_asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: Unit) -> float | None:
     """Return how thick a part is in mm, where supports are wanted: as it is said, or as its solid is high.
 
     Refuses where nobody knows, or it is said of a solid without supports.
@@ -307,7 +316,7 @@ def asked_thickness(wanted: bool, text: str | None, workpiece: Workpiece, unit: 
             raise InputError("the solid gives the part's thickness: leave --thickness out.")
         return None
     solid = workpiece.solid
-    high = optional_length("--thickness", text, unit) or (None if solid is None else solid.height)
+    high = read_optional_length("--thickness", text, unit) or (None if solid is None else solid.height)
     if high is None:
         raise InputError("the thickness of the part is not known: give --thickness.")
     return high
@@ -325,30 +334,30 @@ def report_supported(result: Result, thickness: float, unit: Unit, stream: TextI
     if not fixtures:
         return ()
     requests = try_smaller_requests(result.query, thickness)
-    found, usual = supported_within(fixtures, result.query, requests)
+    found, usual = find_supports_within_limit(fixtures, result.query, requests)
     with_loads = result.query.is_loaded
     table = Table((">rank", *set_headings(unit, with_loads)))
     for rank, one in enumerate(found, 1):
         if one.triples:
             table.add_row(str(rank), *set_row(one.triples[0], unit, with_loads))
     bare = [rank for rank, one in enumerate(found, 1) if not one.triples and not one.stopped]
-    notes = size_notes(found, usual, bare, unit)
+    notes = note_support_sizes(found, usual, bare, unit)
     if found[-1].stopped:
-        notes.append(stopped_words(len(found), len(fixtures)))
+        notes.append(describe_stopped_search(len(found), len(fixtures)))
     best = [triple for one in found for triple in one.triples]
     print_tables(
         "",
         *([table] if table.rows else []),
         *notes,
         *place_notes({rank: one.triples[0] for rank, one in enumerate(found, 1) if one.triples}),
-        *before_first(best),
+        *explain_holes_before_first(best),
         *write_flat_faces_notes(result.workpiece, KEEP_OFF, unit),
         stream=stream,
     )
     return found
 
 
-def before_first(listed: Sequence[Triple]) -> list[str]:
+def explain_holes_before_first(listed: Sequence[Triple]) -> list[str]:
     """Say how holes before column A or row 1 are named, where there are such."""
     if all(min(pad.column, pad.row) >= 0 for triple in listed for pad in triple.supports):
         return []
@@ -379,7 +388,7 @@ def report(
     else:
         print_sets(found, listed, rank, unit)
         if friction is not None:
-            print_tables(friction_words(friction, helped, unit))
+            print_tables(describe_friction_gain(friction, helped, unit))
     if found.count is not None and found.count > len(listed) and not written:
         print_remark("more sets can be listed with --triples, and written into a file with --out.")
     if written:
@@ -397,16 +406,16 @@ def print_sets(found: Supports, listed: Sequence[Triple], rank: int, unit: Unit)
         table.add_row(str(place), *set_row(triple, unit, with_loads))
     number_of = "" if found.count is None else f" of {found.count}"
     head = f"Fixture {rank}: the best {len(listed)}{number_of} sets of three supports and a clamp on top."
-    print_tables(head, table, *notes_of(found, listed, unit))
+    print_tables(head, table, *list_support_notes(found, listed, unit))
 
 
-def notes_of(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
+def list_support_notes(found: Supports, listed: Sequence[Triple], unit: Unit) -> list[str]:
     from workhold.conventions import STEADY
     from workhold.supports.words import write_listing_notes
 
     notes = [
         "The clamp presses at this point of the part's coordinates. Its force times the tipping "
         "arm is the tipping moment that it resists. If the last figure is at least "
-        f"{unit.text(STEADY)}, the part stands before it is clamped."
+        f"{unit.format_length(STEADY)}, the part stands before it is clamped."
     ]
-    return notes + before_first(listed) + write_listing_notes(found, listed, unit, KEEP_OFF)
+    return notes + explain_holes_before_first(listed) + write_listing_notes(found, listed, unit, KEEP_OFF)

@@ -11,9 +11,9 @@ from typing import TextIO
 import typer
 from attrs import define, field, frozen
 
-from workhold.errors import plain, shortened
+from workhold.errors import make_printable, shorten_middle
 
-__all__ = ["Table", "plural", "print_tables", "sentence_lines", "width_of"]
+__all__ = ["Table", "format_count", "print_tables", "wrap_sentence", "find_terminal_width"]
 
 # Between two columns where there is room, and where there is little.
 GAP, NARROW_GAP = 3, 2
@@ -54,12 +54,12 @@ class Table:
     def add_row(self, *words: str) -> None:
         self.rows.append(words)
 
-    def lines(self) -> list[str]:
+    def format_lines(self) -> list[str]:
         """Return the table as lines without a limit of width: headings, a rule, and a line for each row."""
-        fitted = self.fitted(None)
+        fitted = self.fit_to_width(None)
         return [*fitted.headings, *fitted.lines]
 
-    def fitted(self, width: int | None) -> Fitted:
+    def fit_to_width(self, width: int | None) -> Fitted:
         """Fit the table into a width.
 
         A table that is wider has its headings wrapped first. Then the spare columns are left out, which a
@@ -73,7 +73,7 @@ class Table:
         widths = [max(len(heading), most) for heading, most in zip(headings, content, strict=True)]
         tops, gap, kept = [[heading] for heading in headings], GAP, len(headings)
         rows, left_out = [[[word] for word in row] for row in self.rows], ""
-        if width is not None and total(widths, gap) > width:
+        if width is not None and sum_widths(widths, gap) > width:
             gap = NARROW_GAP
             widths = [
                 max(most, *map(len, heading.split() or [""]))
@@ -82,14 +82,16 @@ class Table:
             least = [
                 room
                 if at_right
-                else min(room, max(min(longest_word((heading, *column)), LONGEST_WORD), LEAST_WRAPPED))
+                else min(
+                    room, max(min(measure_longest_word((heading, *column)), LONGEST_WORD), LEAST_WRAPPED)
+                )
                 for heading, column, room, at_right in zip(headings, columns, widths, right, strict=True)
             ]
-            while total(widths[:kept], gap) > width and kept > len(headings) - self.spare:
+            while sum_widths(widths[:kept], gap) > width and kept > len(headings) - self.spare:
                 kept -= 1
-            while total(least[:kept], gap) > width and kept > 1:
+            while sum_widths(least[:kept], gap) > width and kept > 1:
                 kept -= 1
-            widths = narrowed(widths[:kept], least[:kept], total(widths[:kept], gap) - width)
+            widths = narrow_columns(widths[:kept], least[:kept], sum_widths(widths[:kept], gap) - width)
             tops = [wrap(heading, room) for heading, room in zip(headings, widths, strict=False)]
             rows = [
                 [
@@ -117,7 +119,7 @@ class Table:
                 for words in zip(*filled, strict=True)
             ]
 
-        lines = ["─" * total(widths[:kept], gap)]
+        lines = ["─" * sum_widths(widths[:kept], gap)]
         red: set[int] = set()
         for number, row in enumerate(rows):
             written = lines_of(row, low=False)
@@ -129,14 +131,14 @@ class Table:
         )
 
 
-def longest_word(texts: Iterable[str]) -> int:
+def measure_longest_word(texts: Iterable[str]) -> int:
     return max((len(word) for text in texts for word in text.split()), default=0)
 
 
-def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
+def narrow_columns(widths: list[int], least: list[int], over: int) -> list[int]:
     """Narrow columns by so many characters in all, always the widest that can be narrowed.
 
-    >>> narrowed([30, 10, 40], [24, 10, 24], 14)
+    >>> narrow_columns([30, 10, 40], [24, 10, 24], 14)
     [28, 10, 28]
     """
     made = list(widths)
@@ -148,14 +150,14 @@ def narrowed(widths: list[int], least: list[int], over: int) -> list[int]:
     return made
 
 
-def total(widths: list[int], gap: int) -> int:
+def sum_widths(widths: list[int], gap: int) -> int:
     return sum(widths) + gap * (len(widths) - 1)
 
 
-def plural(count: int, word: str) -> str:
+def format_count(count: int, word: str) -> str:
     """Return a number and its noun.
 
-    >>> plural(1, "fixture"), plural(2, "fixture")
+    >>> format_count(1, "fixture"), format_count(2, "fixture")
     ('1 fixture', '2 fixtures')
     """
     return f"{count} {word}" if count == 1 else f"{count} {word}s"
@@ -168,14 +170,14 @@ def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
     is longer.
     """
     stream = stream or sys.stdout
-    width = width_of(stream)
+    width = find_terminal_width(stream)
     for part in parts:
         if isinstance(part, Table):
-            fitted = part.fitted(width)
+            fitted = part.fit_to_width(width)
             headings, lines, red = fitted.headings, fitted.lines, fitted.red
         else:
-            headings, lines, red = sentence_lines(shortened(part), width), [], set()
-        headings, lines = list(map(plain, headings)), list(map(plain, lines))
+            headings, lines, red = wrap_sentence(shorten_middle(part), width), [], set()
+        headings, lines = list(map(make_printable, headings)), list(map(make_printable, lines))
         if lines and stream.isatty():
             headings = [typer.style(line, bold=True) for line in headings]
             lines = [typer.style(line, fg="red") if row in red else line for row, line in enumerate(lines)]
@@ -183,10 +185,10 @@ def print_tables(*parts: Table | str, stream: TextIO | None = None) -> None:
     stream.flush()
 
 
-def sentence_lines(sentence: str, width: int | None) -> list[str]:
+def wrap_sentence(sentence: str, width: int | None) -> list[str]:
     """Wrap a sentence into lines of a width, all of them indented as it is.
 
-    >>> sentence_lines("  one two three", 10)
+    >>> wrap_sentence("  one two three", 10)
     ['  one two', '  three']
     """
     words = sentence.lstrip(" ")
@@ -203,7 +205,7 @@ def sentence_lines(sentence: str, width: int | None) -> list[str]:
     )
 
 
-def width_of(stream: TextIO) -> int | None:
+def find_terminal_width(stream: TextIO) -> int | None:
     """Return the columns of a terminal, or those that the environment says; None where there is no limit."""
     given = os.environ.get("COLUMNS", "")
     if given.isascii() and given.isdigit() and int(given[:6]):

@@ -6,21 +6,21 @@ from collections.abc import Sequence
 from math import degrees, hypot, inf, nan, pi
 from typing import TYPE_CHECKING
 
-from workhold.cli.hold_tables import first_hold_sentence, hold_fixture_tables, hold_table
-from workhold.cli.table import Table, plural
+from workhold.cli.hold_tables import explain_first_hold, hold_fixture_tables, hold_table
+from workhold.cli.table import Table, format_count
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.model.solid import flip_up_axis
 from workhold.presenting.figure_words import (
-    counted_text,
-    edgeless,
-    figure_text,
-    figures_shown,
-    no_edge,
-    peg_groups,
+    find_edgeless_distance,
+    find_figure_unit,
+    format_figure_number,
+    format_ranked_figure,
+    format_rounded,
+    group_peg_columns,
+    list_shown_figures,
+    make_short_heading,
+    mark_edgeless,
     place_of,
-    rounded,
-    short_heading,
-    unit_of,
 )
 from workhold.units import MILLIMETRE, Unit
 
@@ -36,20 +36,20 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "band_table",
-    "counts_sentence",
-    "face_table",
-    "fixture_tables",
-    "height_table",
-    "jumps_sentence",
-    "other_heights",
-    "proof_sentences",
-    "quality_table",
-    "result_table",
-    "slides_always",
-    "solid_table",
-    "standing_sentences",
-    "unfit_sentence",
+    "tabulate_face_heights",
+    "count_fixtures_in_words",
+    "tabulate_faces",
+    "tabulate_fixture_setup",
+    "tabulate_peg_heights",
+    "explain_missing_face_numbers",
+    "suggest_other_heights",
+    "describe_proof_and_undecided",
+    "tabulate_quality",
+    "tabulate_result",
+    "explain_sliding_part",
+    "tabulate_solids",
+    "describe_part_overhang",
+    "count_unfit_in_words",
 ]
 
 # Numbers of further pieces of faces that are named on the terminal.
@@ -62,35 +62,33 @@ UNDECIDED = (
 )
 
 
-def counts_sentence(result: Result) -> str:
+def count_fixtures_in_words(result: Result) -> str:
     """Say how many fixtures there are, of which type, and how many differ under the part's symmetry."""
     total = sum(result.found.values())
     kinds = ", ".join(f"{count} of type {kind}" for kind, count in result.found.items())
     of_types = f": {kinds}" if len(result.toolkit.types) > 1 else ""
-    found = f"{plural(total, 'fixture')}{of_types}"
+    found = f"{format_count(total, 'fixture')}{of_types}"
     if result.pairs is not None and result.seats is not None:
-        each = f", the best of {plural(result.pairs, 'pair')} of clamps at each seat"
-        found += each if result.query.listing == "best" else f" at {plural(result.seats, 'seat')}"
+        each = f", the best of {format_count(result.pairs, 'pair')} of clamps at each seat"
+        found += each if result.query.listing == "best" else f" at {format_count(result.seats, 'seat')}"
     sentence = f"{found}; {sum(result.distinct.values())} distinct under the part's symmetry"
     if result.query.has_seating_rules:
-        sentence += (
-            f"; {plural(len(result), 'fixture')} of the first {result.query.seating} listed for their seating"
-        )
+        sentence += f"; {format_count(len(result), 'fixture')} of the first {result.query.seating} listed for their seating"
     elif len(result) < total:
         sentence += f"; the best {len(result)} are kept"
     return sentence
 
 
-def first_sentence(result: Result, unit: Unit) -> str:
+def explain_first_fixture(result: Result, unit: Unit) -> str:
     """Say why the first fixture stands first; nothing where another order was asked for."""
     if result.holds:
-        return first_hold_sentence(result, unit)
+        return explain_first_hold(result, unit)
     from workhold.statics.why_first import why_first
 
     return why_first(result, unit)
 
 
-def unfit_sentence(unfit: int, between_jaws: bool = False) -> str:
+def count_unfit_in_words(unfit: int, between_jaws: bool = False) -> str:
     """Say how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
     why = (
@@ -101,7 +99,7 @@ def unfit_sentence(unfit: int, between_jaws: bool = False) -> str:
     return f"{unfit:,} of them {are} for a workshop ({why}) and not shown: --unfit shows them."
 
 
-def proof_sentences(result: Result, written: str | None = None) -> list[str]:
+def describe_proof_and_undecided(result: Result, written: str | None = None) -> list[str]:
     """Say in a line how the search was proven, and below it names the first undecided candidates.
 
     ``written`` is the name of the JSON file that lists all of them, if there is one.
@@ -109,7 +107,7 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     proof = result.proof
     if proof is None:
         return []
-    lost, sentence = len(proof.undecided), proof_words(proof, result.complete)
+    lost, sentence = len(proof.undecided), describe_proof(proof, result.complete)
     if lost == 0:
         return [f"{sentence}, none undecided."]
     named = [
@@ -126,7 +124,7 @@ def proof_sentences(result: Result, written: str | None = None) -> list[str]:
     return [f"{sentence}, {lost} undecided:", *named, UNDECIDED]
 
 
-def proof_words(proof: Proof, complete: bool) -> str:
+def describe_proof(proof: Proof, complete: bool) -> str:
     settled = max(proof.escalated - len(proof.undecided), 0)
     candidates = "1 candidate" if proof.candidates == 1 else f"{proof.candidates:,} candidates"
     if proof.cells == 0:
@@ -139,7 +137,7 @@ def proof_words(proof: Proof, complete: bool) -> str:
     return f"{head}: {candidates}, {proof.verified:,} verified, {settled:,} decided by interval arithmetic"
 
 
-def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
+def tabulate_result(result: Result, entries: Entries, count: int, unit: Unit = MILLIMETRE) -> Table:
     """Tabulate the best entries of a result, one line each, with lengths in a unit.
 
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
@@ -150,19 +148,22 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
     from workhold.model.setup import list_length_settings
     from workhold.statics.judging import unfit
 
-    figures, ranked = figures_shown(result)
-    headings = [f">{short_heading(figure, unit)}" for figure in figures]
+    figures, ranked = list_shown_figures(result)
+    headings = [f">{make_short_heading(figure, unit)}" for figure in figures]
     toolkit = result.toolkit
-    groups, opening = peg_groups(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
+    groups, opening = group_peg_columns(toolkit), f">{toolkit.moving.measure} {unit.abbreviation}"
     pairs = [">best of"] if result.query.listing == "best" else []
     columns = (">rank", ">like it", *groups, *pairs, opening, ">angle deg", *headings, "type")
     table = Table(columns, spare=max(len(headings) - (3 if result.seating else 1), 0) + 1)
     # Of two clamps there are two lengths to set, which leave less room: to choose by, fewer decimals will do.
     decimals, degrees_decimals = (unit.decimals, 3) if toolkit.closes_at_once else (unit.decimals - 2, 1)
-    red, longest = unfit(result.table.quality, result.query.tolerance), no_edge(result.workpiece, toolkit)
+    red, longest = (
+        unfit(result.table.quality, result.query.tolerance),
+        find_edgeless_distance(result.workpiece, toolkit),
+    )
     for index, like in zip(entries.index[:count].tolist(), entries.like[:count].tolist(), strict=True):
         fixture = result[index]
-        known = edgeless(fixture.figures, longest)
+        known = mark_edgeless(fixture.figures, longest)
         if red[index]:
             table.red.add(len(table.rows))
         table.add_row(
@@ -176,19 +177,19 @@ def result_table(result: Result, entries: Entries, count: int, unit: Unit = MILL
             " ".join(
                 unit.number(setting.length, decimals) for setting in list_length_settings(fixture, toolkit)
             ),
-            rounded(fixture.pose.written_deg, degrees_decimals),
+            format_rounded(fixture.pose.written_deg, degrees_decimals),
             *(
-                (counted_text if figure in ranked[:-1] else figure_text)(
+                (format_ranked_figure if figure in ranked[:-1] else format_figure_number)(
                     figure, known.get(figure.key, nan), unit
                 )
                 for figure in figures
             ),
-            toolkit.arrangement(fixture.type, fixture.direction).title,
+            toolkit.find_arrangement(fixture.type, fixture.direction).title,
         )
     return table
 
 
-def quality_table(
+def tabulate_quality(
     fixture: Fixture,
     mover: str,
     unit: Unit = MILLIMETRE,
@@ -204,12 +205,12 @@ def quality_table(
     from workhold.statics.bent_pegs import at_force
 
     table = Table(("figure", ">value", "unit", "better", "meaning"))
-    known = edgeless(fixture.quality, longest)
+    known = mark_edgeless(fixture.quality, longest)
     for figure in (*FIGURES, PROGRAM_FIGURE):
         if figure.key in known:
-            of = unit_of(figure, unit)
+            of = find_figure_unit(figure, unit)
             better = "more" if figure.more_is_better else "less"
-            value = figure_text(figure, known[figure.key], unit)
+            value = format_figure_number(figure, known[figure.key], unit)
             words, meaning = figure.named_for(mover)
             if figure.key in PIN_KEYS:
                 at = at_force(jaw_force, mover, unit)
@@ -218,23 +219,23 @@ def quality_table(
     return table
 
 
-def standing_sentences(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
+def describe_part_overhang(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
     """Say how far the part stands out or hangs over, and where on its plate the setup sheet has it."""
-    from workhold.drawing.panel import moved_words
+    from workhold.drawing.panel import describe_move
     from workhold.model.moved_setup import describe_overhang, find_move_to_middle, move_fixture_by_holes
 
     toolkit, move = result.toolkit, find_move_to_middle(fixture, result.toolkit, result.workpiece)
     words = describe_overhang(
-        move_fixture_by_holes(fixture, toolkit, move), toolkit, result.workpiece, unit.text
+        move_fixture_by_holes(fixture, toolkit, move), toolkit, result.workpiece, unit.format_length
     )
     moved = ""
     if move != (0, 0):
         moved = f"The setup sheet puts the whole set-up in the middle of the {toolkit.plates[0].noun}, "
-        moved += f"{moved_words(move)}."
+        moved += f"{describe_move(move)}."
     return [said for said in (moved, words) if said]
 
 
-def fixture_tables(
+def tabulate_fixture_setup(
     fixture: Fixture, toolkit: Toolkit, rank: int, total: int, unit: Unit = MILLIMETRE
 ) -> tuple[Table | str, ...]:
     """Say how to set up one fixture, with lengths in a unit: what to turn, and where each peg goes."""
@@ -248,30 +249,30 @@ def fixture_tables(
     flats = FLAT_PIN in toolkit.contacts
     pegs = Table(("hole", noun if several else "peg", x, y, ">face", *[">flat at"] * flats, per))
     for peg in fixture.pegs:
-        stands_on = peg.carrier if several else toolkit.carrier(peg.carrier).peg
+        stands_on = peg.carrier if several else toolkit.find_carrier(peg.carrier).peg
         where = unit.number(peg.x), unit.number(peg.y)
-        looks = ["" if peg.flat_deg is None else f"{rounded(peg.flat_deg, 2)}°"] * flats
+        looks = ["" if peg.flat_deg is None else f"{format_rounded(peg.flat_deg, 2)}°"] * flats
         pegs.add_row(place_of(peg, toolkit), stands_on, *where, peg.touched, *looks, f"{peg.force:z.3f}")
     pose = fixture.pose
     return (
-        f"Fixture {rank} of {total}, type {toolkit.arrangement(fixture.type, fixture.direction).title}",
-        *(setting_sentence(setting, unit) for setting in list_length_settings(fixture, toolkit)),
-        *pair_sentences(fixture),
-        f"The part is turned by {rounded(pose.written_deg, 3)} degrees, its origin lies at "
+        f"Fixture {rank} of {total}, type {toolkit.find_arrangement(fixture.type, fixture.direction).title}",
+        *(describe_length_setting(setting, unit) for setting in list_length_settings(fixture, toolkit)),
+        *describe_clamp_order(fixture),
+        f"The part is turned by {format_rounded(pose.written_deg, 3)} degrees, its origin lies at "
         f"{place((pose.x, pose.y), unit)} {unit.abbreviation} from {toolkit.datum.full}",
         pegs,
     )
 
 
-def setting_sentence(setting: LengthSetting, unit: Unit) -> str:
-    mover, length = setting.carrier, unit.text(setting.length)
+def describe_length_setting(setting: LengthSetting, unit: Unit) -> str:
+    mover, length = setting.carrier, unit.format_length(setting.length)
     if setting.tip is None:
         return f"{setting.name[0].upper()}{setting.name[1:]} {length}"
     place = setting.mounting.there.format(place=setting.place)
     return f"The {mover.noun}, {place}, pushes {mover.towards}; {setting.title} {length}"
 
 
-def pair_sentences(fixture: Fixture) -> list[str]:
+def describe_clamp_order(fixture: Fixture) -> list[str]:
     """Say in which order two clamps are tightened and with what forces; empty for other fixtures."""
     from workhold.model.clamps import compute_clamp_shares, name_clamps, order_words
 
@@ -288,7 +289,7 @@ def pair_sentences(fixture: Fixture) -> list[str]:
     ]
 
 
-def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
+def tabulate_faces(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
     """Tabulate the numbered faces of a part, with lengths in a unit.
 
     Where a face ends the next one begins, so that its end is left out where there is little room.
@@ -299,12 +300,12 @@ def face_table(workpiece: Workpiece, unit: Unit = MILLIMETRE) -> Table:
         outer = f"piece {index + 1}" if pieces > 1 else "outer"
         loop_of += [outer if index < pieces else f"hole {index - pieces + 1}"] * len(loop)
     for face in workpiece.faces:
-        kind, size, start, end = face_words(face, unit)
+        kind, size, start, end = describe_face(face, unit)
         table.add_row(str(face.number), kind, size, loop_of[face.number], start, end)
     return table
 
 
-def jumps_sentence(workpiece: Workpiece) -> list[str]:
+def explain_missing_face_numbers(workpiece: Workpiece) -> list[str]:
     """Say why some numbers are not in the table of faces; empty where none is missing."""
     further = [str(number) for face in workpiece.faces for number in face.segments if number != face.number]
     if not further:
@@ -318,7 +319,7 @@ def jumps_sentence(workpiece: Workpiece) -> list[str]:
     ]
 
 
-def face_words(face: Face, unit: Unit) -> tuple[str, str, str, str]:
+def describe_face(face: Face, unit: Unit) -> tuple[str, str, str, str]:
     """Return kind, size, start and end of a face, with lengths in a unit."""
     from workhold.geometry.segment import Arc
 
@@ -339,7 +340,7 @@ def place(point: tuple[float, float], unit: Unit) -> str:
     return f"({unit.number(point[0])}, {unit.number(point[1])})"
 
 
-def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
+def tabulate_solids(solids: Sequence[FileSolid], unit: Unit) -> Table:
     short, named = unit.abbreviation, any(solid.name for solid in solids)
     table = Table((">solid", *(("name",) if named else ()), f"size {short}", "lowest corner"))
     for solid in solids:
@@ -349,7 +350,7 @@ def solid_table(solids: Sequence[FileSolid], unit: Unit) -> Table:
     return table
 
 
-def band_table(workpiece: Workpiece, unit: Unit) -> list[Table]:
+def tabulate_face_heights(workpiece: Workpiece, unit: Unit) -> list[Table]:
     """Tabulate the heights at which each face is touched; nothing for a part without heights."""
     solid = workpiece.solid
     if solid is None:
@@ -363,7 +364,7 @@ def band_table(workpiece: Workpiece, unit: Unit) -> list[Table]:
     return [table]
 
 
-def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
+def tabulate_peg_heights(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
     """Tabulate what the part offers to pegs of other heights; nothing where nobody looked."""
     if not rows:
         return []
@@ -375,7 +376,7 @@ def height_table(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
     return [table]
 
 
-def touches_one_way(workpiece: Workpiece) -> bool:
+def touches_parallel_faces_only(workpiece: Workpiece) -> bool:
     """Return whether pegs can touch some faces of a solid, and all these are flat and parallel."""
     from workhold.geometry.segment import are_parallel_lines
 
@@ -385,9 +386,9 @@ def touches_one_way(workpiece: Workpiece) -> bool:
     return are_parallel_lines(face.segment for face in touched)
 
 
-def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
-    """What holds a solid that slides along all that pegs of any height touch of it; nothing for others."""
-    if workpiece.solid is None or not touches_one_way(workpiece):
+def explain_sliding_part(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
+    """Return what holds a solid that slides along all that pegs of any height touch of it; nothing for others."""
+    if workpiece.solid is None or not touches_parallel_faces_only(workpiece):
         return []
     if any(row.touchable > 0 and not row.slides for row in rows):
         return []
@@ -400,17 +401,18 @@ def slides_always(workpiece: Workpiece, rows: Sequence[HeightRow]) -> list[str]:
     ]
 
 
-def other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
-    """What may help where pegs as high as these hold a solid nowhere: other heights, and the other side up.
+def suggest_other_heights(workpiece: Workpiece, rows: Sequence[HeightRow], unit: Unit) -> list[str]:
+    """Return what may help where pegs as high as these hold a solid nowhere: other heights, and the other
+    side up.
 
     ``rows`` are what other heights of the pegs offer; those with more to touch are named first.
     """
     solid = workpiece.solid
     if solid is None:
         return []
-    if said := slides_always(workpiece, rows):
+    if said := explain_sliding_part(workpiece, rows):
         return said
-    slides = touches_one_way(workpiece)
+    slides = touches_parallel_faces_only(workpiece)
     others = [
         row
         for row in rows

@@ -13,9 +13,16 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import evolve, field, frozen
 
-from workhold.cli.commands import option
-from workhold.cli.search_options import with_fit_of
-from workhold.cli.values import length, optional_force, optional_length, pitches, two_lengths, whole_number
+from workhold.cli.commands import make_option
+from workhold.cli.search_options import add_dowel_fit
+from workhold.cli.values import (
+    read_length,
+    read_optional_force,
+    read_optional_length,
+    read_pitches,
+    read_two_lengths,
+    read_whole_number,
+)
 from workhold.errors import InputError
 from workhold.fixels.fields import COLUMNS, FLAT, MIN_GAP, NAMES, OPTIONS, PEG_RADIUS, PITCH, ROWS, TRAVEL
 from workhold.fixels.table import TOOLKIT_SECTION, FieldTable, Form, ToolkitField
@@ -33,37 +40,37 @@ __all__ = [
     "ListWords",
     "Named",
     "ToolkitWords",
-    "heights_of_all",
-    "peg_diameter_of",
-    "query_of",
-    "toolkits_to_try",
-    "words_of",
+    "collect_carrier_heights",
+    "find_peg_diameter",
+    "make_query",
+    "list_toolkits_to_try",
+    "split_words",
 ]
 
-TOOLKIT = option(
+TOOLKIT = make_option(
     TOOLKIT_SECTION,
     "NAME|FILE",
     f"{' '.join(f'{name}: {words}.' for name, words in NAMES.items())} Or a name of workhold toolkits, or a "
     "TOML file. vise if not given.",
     "--toolkit",
 )
-MIN_OPENING = option(
+MIN_OPENING = make_option(
     TOOLKIT_SECTION,
     "LENGTH",
     "Smallest distance from the left jaw's last column to the right jaw's first, if larger.",
 )
 
 
-def typed_options() -> dict[str, Any]:
+def make_toolkit_options() -> dict[str, Any]:
     """Make the attributes of :class:`ToolkitWords` in the order of the help, from the field table."""
     out = {
-        "vise": option(
+        "vise": make_option(
             TOOLKIT_SECTION, "NAME|FILE", "The same as --toolkit; the options below change its values."
         ),
         "toolkit": TOOLKIT,
     }
     for row in OPTIONS:
-        out[row.name] = option(row.section, row.metavar, row.help.format(option=row.option), row.option)
+        out[row.name] = make_option(row.section, row.metavar, row.help.format(option=row.option), row.option)
         if row is MIN_GAP:
             out["min_opening"] = MIN_OPENING
     words: Any = str | None
@@ -74,7 +81,7 @@ def typed_options() -> dict[str, Any]:
     }
 
 
-@frozen(these=typed_options())
+@frozen(these=make_toolkit_options())
 class ToolkitWords:
     """The options of the toolkit, as typed; None for those not given."""
 
@@ -83,7 +90,7 @@ class ToolkitWords:
         toolkit: str | None
         min_opening: str | None
 
-    def fields(self, unit: Unit) -> dict[str, Any]:
+    def read_given_fields(self, unit: Unit) -> dict[str, Any]:
         """Make keyword arguments of a toolkit, in mm, of the options that were given."""
         return {
             row.name: READERS[row.form](row.option, words, unit)
@@ -93,7 +100,7 @@ class ToolkitWords:
 
     def refuse_others(self, kind: type[Toolkit]) -> None:
         """Refuse options that a kind of toolkit does not have."""
-        from workhold.fixels.kinds import owner_of
+        from workhold.fixels.kinds import find_owner
 
         known = {row.name for row in kind.table.fields}
         for row in OPTIONS:
@@ -102,11 +109,11 @@ class ToolkitWords:
                 typed.append("--min-opening")
             if typed and row.name not in known:
                 raise InputError(
-                    f"{typed[0]} is of {owner_of(row).noun}s: a {kind.noun} has no {row.belongs_to}; leave "
+                    f"{typed[0]} is of {find_owner(row).noun}s: a {kind.noun} has no {row.belongs_to}; leave "
                     "it out, or choose another --toolkit."
                 )
 
-    def asked(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
+    def read_toolkit(self, unit: Unit) -> tuple[Toolkit, Tolerance | None]:
         """Return the toolkit, and the tolerance that a named one comes with.
 
         Raises
@@ -114,11 +121,11 @@ class ToolkitWords:
         InputError
             For words that mean nothing, options that are missing, and a vise that cannot be.
         """
-        fields, tolerance = self.fields(unit), None
-        opening = optional_length("--min-opening", self.min_opening, unit)
-        from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, toolkit_of
+        fields, tolerance = self.read_given_fields(unit), None
+        opening = read_optional_length("--min-opening", self.min_opening, unit)
+        from workhold.fixels.kinds import ALIASES, KINDS, USUAL, make_toolkit, resolve_kind
 
-        kind, said = kind_of(USUAL)
+        kind, said = resolve_kind(USUAL)
         words = [word for word in (self.vise, self.toolkit) if word is not None]
         named = [word for word in words if word.lower() not in (*KINDS, *ALIASES)]
         if len(named) > 1:
@@ -134,7 +141,7 @@ class ToolkitWords:
                 tolerance = evolve(tolerance, fit=None)
         for word in words:
             if word not in named:
-                kind, more = kind_of(word.lower())
+                kind, more = resolve_kind(word.lower())
                 said = {**said, **more}
         self.refuse_others(KINDS[kind])
         fields = {**said, **fields}
@@ -145,34 +152,34 @@ class ToolkitWords:
                     f"the {noun}'s {row.missing} is not given: add {row.option}, or name a {noun} with "
                     "--toolkit (see workhold toolkits)."
                 )
-        vise = toolkit_of(kind, fields)
+        vise = make_toolkit(kind, fields)
         travel = vise.moving.travel
         if opening is None or travel is None:
             return vise, tolerance
         if travel.most is not None and opening > travel.most:
-            most = unit.figure(travel.most)
+            most = unit.format_short_length(travel.most)
             raise InputError(
-                f"the smallest opening {unit.figure(opening)} {unit.abbreviation} is above the largest, "
+                f"the smallest opening {unit.format_short_length(opening)} {unit.abbreviation} is above the largest, "
                 f"{most} {unit.abbreviation}: no opening is left."
             )
         if opening > travel.least:
             # The jaws never stand farther apart than the pegs, so the one limit says it all.
-            vise = toolkit_of(kind, fields | {MIN_GAP.name: opening})
+            vise = make_toolkit(kind, fields | {MIN_GAP.name: opening})
         return vise, tolerance
 
 
-def lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
+def read_lengths(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
     """Read lengths with commas between them; return them in mm."""
-    return tuple(length(option_name, word, unit) for word in text.split(","))
+    return tuple(read_length(option_name, word, unit) for word in text.split(","))
 
 
-def span(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
+def read_length_range(option_name: str, text: str, unit: Unit) -> tuple[float, ...]:
     """Read the least and the most of a length; return them in mm."""
     remedy = "two lengths: give the least and the most, such as 10,35."
-    return two_lengths(option_name, text, unit, remedy)
+    return read_two_lengths(option_name, text, unit, remedy)
 
 
-def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
+def read_directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
     """Read directions such as ``-x,-y``, or pairs of them such as ``-x:-y,-x:+y``; refuse both together."""
     words = [word.strip() for word in text.split(",")]
     if len({":" in word for word in words}) == 2:
@@ -184,17 +191,17 @@ def directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
 
 # How the words of an option are read, by the form of its field.
 READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
-    "count": lambda name, text, unit: whole_number(name, text),
-    "length": length,
-    "pitch": lambda name, text, unit: pitches(text, unit),
-    "span": span,
-    "flat": lengths,
-    "heights": span,
+    "count": lambda name, text, unit: read_whole_number(name, text),
+    "length": read_length,
+    "pitch": lambda name, text, unit: read_pitches(text, unit),
+    "span": read_length_range,
+    "flat": read_lengths,
+    "heights": read_length_range,
     "holes": lambda name, texts, unit: [hole for text in texts for hole in text.split(",")],
-    "directions": lambda name, text, unit: directions(name, text),
-    "lengths": lengths,
+    "directions": lambda name, text, unit: read_directions(name, text),
+    "lengths": read_lengths,
     "choice": lambda name, text, unit: text,
-    "force": lambda name, text, unit: optional_force(name, text),
+    "force": lambda name, text, unit: read_optional_force(name, text),
 }
 
 
@@ -224,7 +231,7 @@ def list_options() -> dict[str, Any]:
         says = ENTRIES[row.form] if not row.allowed else f"such as {','.join(map(str, row.allowed))}."
         plural = PLURALS.get(row.name, row.labels[0].label)
         made[row.name] = field(
-            default=option(SWEEP, "LIST", f"{plural}, {says}", row.option), type=words, kw_only=True
+            default=make_option(SWEEP, "LIST", f"{plural}, {says}", row.option), type=words, kw_only=True
         )
     return made
 
@@ -233,7 +240,7 @@ def list_options() -> dict[str, Any]:
 class ListWords:
     """Lists of figures of toolkits, as typed; None for those not given."""
 
-    def given(self) -> list[tuple[ToolkitField, str]]:
+    def list_given_fields(self) -> list[tuple[ToolkitField, str]]:
         """List the fields that are varied, each with its list."""
         typed = ((row, getattr(self, row.name)) for row in LISTED)
         return [(row, text) for row, text in typed if isinstance(text, str)]
@@ -241,7 +248,7 @@ class ListWords:
     @property
     def has_pitches(self) -> bool:
         """Whether pitches are varied, with which lists alone can make toolkits."""
-        return any(row is PITCH for row, _ in self.given())
+        return any(row is PITCH for row, _ in self.list_given_fields())
 
 
 # More toolkits than this are more likely a slip than a wish.
@@ -257,38 +264,38 @@ class Named:
     fields: dict[str, Any]
     tolerance: Tolerance | None = None
 
-    def changed(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
+    def apply_changes(self, changes: list[tuple[str, dict[str, Any]]]) -> Named:
         name = ", ".join(filter(None, (self.name, *(words for words, _ in changes))))
         fields = {key: value for _, change in changes for key, value in change.items()}
         return Named(name, self.kind, self.fields | fields, self.tolerance)
 
 
-def query_of(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
+def make_query(workpiece: Workpiece, named: Named, asked: dict[str, Any]) -> Query | InputError:
     """Make the query for a toolkit, or returns the error that says why there is no such toolkit."""
-    from workhold.fixels.kinds import toolkit_of
+    from workhold.fixels.kinds import make_toolkit
     from workhold.model.query import Query
 
     try:
         return Query(
             workpiece,
-            toolkit_of(named.kind, named.fields),
-            **asked | {"tolerance": with_fit_of(asked["tolerance"], named.tolerance)},
+            make_toolkit(named.kind, named.fields),
+            **asked | {"tolerance": add_dowel_fit(asked["tolerance"], named.tolerance)},
         )
     except InputError as error:
         return error
 
 
-def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
+def collect_carrier_heights(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
     """Find the heights of carriers, by role, with which one reading of a part serves all toolkits.
 
     Refuses toolkits that differ in the heights of a role.
     """
-    from workhold.fixels.kinds import toolkit_of
+    from workhold.fixels.kinds import make_toolkit
 
     found: dict[str, tuple[float, ...]] = {}
     for one in toolkits:
         try:
-            heights = toolkit_of(one.kind, one.fields).heights
+            heights = make_toolkit(one.kind, one.fields).heights
         except InputError:
             # Why there is no such toolkit stands in its row.
             continue
@@ -301,17 +308,17 @@ def heights_of_all(toolkits: Sequence[Named]) -> dict[str, tuple[float, ...]]:
     return found
 
 
-def peg_diameter_of(named: Named) -> float | None:
+def find_peg_diameter(named: Named) -> float | None:
     """Find the diameter of a toolkit's pegs in mm; None where there is no such toolkit."""
-    from workhold.fixels.kinds import toolkit_of
+    from workhold.fixels.kinds import make_toolkit
 
     try:
-        return toolkit_of(named.kind, named.fields).peg_diameter
+        return make_toolkit(named.kind, named.fields).peg_diameter
     except InputError:
         return None
 
 
-def toolkits_to_try(
+def list_toolkits_to_try(
     names: list[str] | None, toolkit: str | None, varied: ListWords, unit: Unit
 ) -> list[Named]:
     """List the toolkits to try.
@@ -320,59 +327,61 @@ def toolkits_to_try(
     ``varied`` are the lists of figures, which are combined with each other and with each toolkit. The unit is
     of lengths without one. Refuses lists that do not make a toolkit, and more than a thousand toolkits.
     """
-    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, kind_of, table_of
+    from workhold.fixels.kinds import ALIASES, KINDS, USUAL, find_table, resolve_kind
 
     is_kind = toolkit is not None and toolkit.lower() in (*KINDS, *ALIASES)
-    kind, said = kind_of(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
+    kind, said = resolve_kind(toolkit.lower()) if toolkit is not None and is_kind else (None, {})
     if toolkit is not None and not is_kind:
         names = [*(names or ()), toolkit]
-    given = varied.given()
+    given = varied.list_given_fields()
     lists = [
-        [(name_of(row, word), {row.name: read(row, word, unit)}) for word in words_of(row.option, text)]
+        [(name_of(row, word), {row.name: read(row, word, unit)}) for word in split_words(row.option, text)]
         for row, text in given
     ]
     if kind is not None:
-        refuse_missing_fields(table_of(kind), given)
+        refuse_missing_fields(find_table(kind), given)
     if names is None and varied.has_pitches:
-        refuse_too_few(table_of(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
-        refuse_missing_fields(table_of(kind or USUAL), given)
+        refuse_too_few(find_table(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
+        refuse_missing_fields(find_table(kind or USUAL), given)
         bases = [Named("", kind or USUAL, dict(said))]
     else:
-        bases = named_toolkits(names, kind, said, given)
+        bases = load_named_toolkits(names, kind, said, given)
     count = len(bases) * prod(len(entries) for entries in lists)
     if count > MOST_TOOLKITS:
         raise InputError(
             f"the lists combine to {count} toolkits: give lists that combine to {MOST_TOOLKITS} or fewer."
         )
-    return [base.changed(list(changes)) for base in bases for changes in product(*lists)]
+    return [base.apply_changes(list(changes)) for base in bases for changes in product(*lists)]
 
 
-def named_toolkits(
+def load_named_toolkits(
     names: list[str] | None, kind: str | None, said: Mapping[str, Any], given: list[tuple[ToolkitField, str]]
 ) -> list[Named]:
-    """Loads the toolkits that are named, or all presets that have every field that is varied.
+    """Load the toolkits that are named, or all presets that have every field that is varied.
 
     Refuses fields that a named toolkit does not have, and fields that none is left with.
     """
-    from workhold.files.toolkit_file import load_toolkit, preset_names
-    from workhold.fixels.kinds import table_of
+    from workhold.files.toolkit_file import list_preset_names, load_toolkit
+    from workhold.fixels.kinds import find_table
 
     if names is None:
         loaded = [
-            one for one in map(load_toolkit, preset_names()) if not unknown_fields(table_of(one.kind), given)
+            one
+            for one in map(load_toolkit, list_preset_names())
+            if not list_unknown_fields(find_table(one.kind), given)
         ]
     else:
-        loaded = [load_toolkit(name) for words in names for name in words_of("--vise", words)]
+        loaded = [load_toolkit(name) for words in names for name in split_words("--vise", words)]
         for one in loaded:
-            refuse_missing_fields(table_of(one.kind), given)
+            refuse_missing_fields(find_table(one.kind), given)
     # A kind picks those of the kind, and makes one sort of toolkit of another.
     bases = [
         Named(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
         for one in loaded
-        if kind is None or table_of(kind) is table_of(one.kind)
+        if kind is None or find_table(kind) is find_table(one.kind)
     ]
     if not bases:
-        which = f"that is a {table_of(kind).noun}" if kind else "with all of the fields to vary"
+        which = f"that is a {find_table(kind).noun}" if kind else "with all of the fields to vary"
         raise InputError(
             f"there is no toolkit {which}: name others with --toolkit (see workhold toolkits), or give "
             f"{PITCH.option} and all that such a toolkit needs."
@@ -380,17 +389,17 @@ def named_toolkits(
     return bases
 
 
-def unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> list[ToolkitField]:
+def list_unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> list[ToolkitField]:
     known = {row.name for row in table.fields}
     return [row for row, _ in given if row.name not in known]
 
 
 def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
-    from workhold.fixels.kinds import owner_of
+    from workhold.fixels.kinds import find_owner
 
-    for row in unknown_fields(table, given):
+    for row in list_unknown_fields(table, given):
         raise InputError(
-            f"{row.option} is of {owner_of(row).noun}s: a {table.noun} has no {row.belongs_to}; leave it "
+            f"{row.option} is of {find_owner(row).noun}s: a {table.noun} has no {row.belongs_to}; leave it "
             "out, or choose another toolkit."
         )
 
@@ -408,7 +417,7 @@ def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[Toolkit
 def read(row: ToolkitField, word: str, unit: Unit) -> Any:
     """Read an entry of the list of a field; lengths come in mm."""
     if row is PITCH:
-        return pitch_of(word, unit)
+        return read_pitch(word, unit)
     if row.form == TRAVEL.form and word.count(":") != 1:
         raise InputError(
             f"{row.option} {word!r} is not two lengths: give the least and the most with a colon, such as "
@@ -432,14 +441,14 @@ def name_of(row: ToolkitField, word: str) -> str:
     return f"{'radius' if row is PEG_RADIUS else row.words} {word}"
 
 
-def words_of(option: str, text: str) -> list[str]:
+def split_words(option: str, text: str) -> list[str]:
     words = [word.strip() for word in text.split(",")]
     if not all(words):
         raise InputError(f"{option} {text!r} has an empty entry: give a list such as 1,2,4.")
     return words
 
 
-def pitch_of(word: str, unit: Unit) -> tuple[float, float]:
+def read_pitch(word: str, unit: Unit) -> tuple[float, float]:
     """Read a pitch for both directions, or ``XxY``."""
     x, cross, y = word.partition("x")
-    return length("--pitch", x, unit), length("--pitch", y if cross else x, unit)
+    return read_length("--pitch", x, unit), read_length("--pitch", y if cross else x, unit)

@@ -10,30 +10,30 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from workhold.errors import InputError
-from workhold.limits import counting_number, refuse_long, refuse_strong
-from workhold.units import INCH, MILLIMETRE, POUND, Unit, pixels_an_inch, unit_named
+from workhold.limits import check_count, refuse_long, refuse_strong
+from workhold.units import INCH, MILLIMETRE, POUND, Unit, find_pixels_per_inch, find_unit
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
 
 __all__ = [
-    "choice",
-    "in_unit",
-    "length",
-    "length_from_zero",
-    "length_unit",
+    "read_choice",
+    "read_quantity",
+    "read_length",
+    "read_length_from_zero",
+    "read_unit",
     "number",
-    "optional_count",
-    "optional_force",
-    "optional_length",
-    "optional_positive_length",
-    "picture_ending",
-    "pitches",
-    "positive_number",
-    "printed_unit",
-    "two_lengths",
-    "usual_unit",
-    "whole_number",
+    "read_optional_count",
+    "read_optional_force",
+    "read_optional_length",
+    "read_optional_positive_length",
+    "read_picture_ending",
+    "read_pitches",
+    "read_positive_number",
+    "choose_printed_unit",
+    "read_two_lengths",
+    "read_usual_unit",
+    "read_whole_number",
 ]
 
 PICTURE_ENDINGS = (".svg", ".png")
@@ -44,26 +44,29 @@ FORCE_UNITS = {"n": 1.0, "kn": 1000.0, "lbf": POUND}
 FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]+)/(?P<below>[0-9]+)")
 
 
-def length_unit(name: str | None) -> Unit:
-    """The unit of lengths given and shown, millimetres where none is asked for, or the pixels of a drawing."""
-    name = usual_unit() if name is None else name
-    return MILLIMETRE if name is None or pixels_an_inch(name) is not None else unit_named(name)
+def read_unit(name: str | None) -> Unit:
+    """Return the unit of lengths given and shown, millimetres where none is asked for, or the pixels of a drawing."""
+    name = read_usual_unit() if name is None else name
+    return MILLIMETRE if name is None or find_pixels_per_inch(name) is not None else find_unit(name)
 
 
-def usual_unit() -> str | None:
-    """The unit that a shop has set for good in the environment, ``WORKHOLD_UNIT``; None where it has set none."""
+def read_usual_unit() -> str | None:
+    """Return the unit that a shop has set for good in the environment, ``WORKHOLD_UNIT``; None where it has
+    set none.
+    """
     return os.environ.get("WORKHOLD_UNIT") or None
 
 
-def printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
-    """The unit of lengths shown of a fixture: the one asked for or set for good, else that of the toolkit's holes.
+def choose_printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
+    """Return the unit of lengths shown of a fixture: the one asked for or set for good, else that of the
+    toolkit's holes.
 
-    Numbers that are typed without a unit stay in the unit of :func:`length_unit`.
+    Numbers that are typed without a unit stay in the unit of :func:`read_unit`.
     """
-    return INCH if name is None and usual_unit() is None and toolkit.is_in_inches else length_unit(name)
+    return INCH if name is None and read_usual_unit() is None and toolkit.is_in_inches else read_unit(name)
 
 
-def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
+def read_length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     """Read a finite length in mm; the toolkit checks its sign.
 
     Parameters
@@ -74,14 +77,14 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
 
     Examples
     --------
-    >>> length("--min-gap", "12.7"), length("--min-gap", "0.5in"), length("--min-gap", '1-1/2"')
+    >>> read_length("--min-gap", "12.7"), read_length("--min-gap", "0.5in"), read_length("--min-gap", '1-1/2"')
     (12.7, 12.7, 38.1)
     """
     match = LENGTH.fullmatch(text)
     value = nan
     if match is not None:
         own = match["unit"]
-        value = (unit if own is None else unit_named(own)).length(number(match["number"]))
+        value = (unit if own is None else find_unit(own)).to_mm(number(match["number"]))
     if not isfinite(value):
         raise InputError(
             f"{option} {text!r} is not a length: give a plain number in {unit.abbreviation}, such as 12.5, "
@@ -91,31 +94,31 @@ def length(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     return value
 
 
-def length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
+def read_length_from_zero(option: str, text: str, unit: Unit = MILLIMETRE) -> float:
     """Return a length of 0 or more in mm."""
-    value = length(option, text, unit)
+    value = read_length(option, text, unit)
     if value < 0:
         raise InputError(f"{option} {text} is negative: give 0 or more.")
     return value
 
 
-def two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float]:
-    """Two lengths in mm with a comma between them.
+def read_two_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float]:
+    """Return two lengths in mm with a comma between them.
 
     ``remedy`` says what other words are not, and what to give.
     """
     words = text.split(",")
     if len(words) != 2:
         raise InputError(f"{option} {text!r} is not {remedy}")
-    return length(option, words[0], unit), length(option, words[1], unit)
+    return read_length(option, words[0], unit), read_length(option, words[1], unit)
 
 
-def three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float, float]:
-    """Three lengths in mm with commas between them; ``remedy`` is as of :func:`two_lengths`."""
+def read_three_lengths(option: str, text: str, unit: Unit, remedy: str) -> tuple[float, float, float]:
+    """Return three lengths in mm with commas between them; ``remedy`` is as of :func:`read_two_lengths`."""
     words = text.split(",")
     if len(words) != 3:
         raise InputError(f"{option} {text!r} is not {remedy}")
-    x, y, z = (length(option, word, unit) for word in words)
+    x, y, z = (read_length(option, word, unit) for word in words)
     return x, y, z
 
 
@@ -132,20 +135,20 @@ def number(text: str) -> float:
     return -value if fraction["sign"] == "-" else value
 
 
-def optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
+def read_optional_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
     """Return a finite length in mm, or None where the option is not given."""
-    return None if text is None else length(option, text, unit)
+    return None if text is None else read_length(option, text, unit)
 
 
-def optional_positive_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
+def read_optional_positive_length(option: str, text: str | None, unit: Unit = MILLIMETRE) -> float | None:
     """Return a length above zero in mm, or None where the option is not given."""
-    value = optional_length(option, text, unit)
+    value = read_optional_length(option, text, unit)
     if value is not None and value <= 0:
         raise InputError(f"{option} {text!r} is not above 0: give a positive length.")
     return value
 
 
-def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
+def read_pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
     """Return the x and y pitch in mm, from one length or two.
 
     Parameters
@@ -154,14 +157,14 @@ def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
 
     Examples
     --------
-    >>> pitches("10"), pitches("10,12.5"), pitches("1/2in,1in")
+    >>> read_pitches("10"), read_pitches("10,12.5"), read_pitches("1/2in,1in")
     ((10.0, 10.0), (10.0, 12.5), (12.7, 25.4))
     """
     parts = text.split(",")
     if len(parts) > 2:
         raise InputError(f"--pitch {text!r} has {len(parts)} numbers: give one for both directions, or X,Y.")
     try:
-        numbers = [length("--pitch", part, unit) for part in parts]
+        numbers = [read_length("--pitch", part, unit) for part in parts]
     except InputError as error:
         raise InputError(
             f"--pitch {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, "
@@ -170,7 +173,7 @@ def pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
     return numbers[0], numbers[-1]
 
 
-def whole_number(option: str, text: str) -> int:
+def read_whole_number(option: str, text: str) -> int:
     """Read a whole number; its sign is checked elsewhere."""
     try:
         return int(text)
@@ -178,35 +181,35 @@ def whole_number(option: str, text: str) -> int:
         raise InputError(f"{option} {text!r} is not a whole number.") from None
 
 
-def optional_count(option: str, text: str | None) -> int | None:
+def read_optional_count(option: str, text: str | None) -> int | None:
     """Return a number of things, from 1, or None where the option is not given."""
-    return None if text is None else counting_number(option, whole_number(option, text))
+    return None if text is None else check_count(option, read_whole_number(option, text))
 
 
-def positive_number(option: str, text: str) -> float:
+def read_positive_number(option: str, text: str) -> float:
     value = number(text.strip())
     if not (isfinite(value) and value > 0):
         raise InputError(f"{option} {text!r} is not a positive number: give one above 0.")
     return value
 
 
-def optional_force(option: str, text: str | None) -> float | None:
+def read_optional_force(option: str, text: str | None) -> float | None:
     """Return a force above zero in N, or None where the option is not given.
 
     Examples
     --------
-    >>> optional_force("--jaw-force", "3kN"), optional_force("--jaw-force", "1000 lbf")
+    >>> read_optional_force("--jaw-force", "3kN"), read_optional_force("--jaw-force", "1000 lbf")
     (3000.0, 4448.2216152605)
     """
     if text is None:
         return None
     remedy = "a force above 0: give it in N, or with its unit, such as 3kN or 700lbf."
-    value = in_unit(option, text, FORCE, FORCE_UNITS, "n", remedy)
+    value = read_quantity(option, text, FORCE, FORCE_UNITS, "n", remedy)
     refuse_strong(option, value)
     return value
 
 
-def in_unit(
+def read_quantity(
     option: str, text: str, words: re.Pattern[str], units: Mapping[str, float], usual: str, remedy: str
 ) -> float:
     """Return a number above zero with a unit of its own, in what its units are counted in.
@@ -222,12 +225,12 @@ def in_unit(
     return value
 
 
-def choice(option: str, text: str, among: Sequence[str]) -> str:
+def read_choice(option: str, text: str, among: Sequence[str]) -> str:
     """Return one of several words, in any mixture of capitals.
 
     Examples
     --------
-    >>> choice("--type", "ii", ("I", "II", "both"))
+    >>> read_choice("--type", "ii", ("I", "II", "both"))
     'II'
     """
     for word in among:
@@ -236,7 +239,7 @@ def choice(option: str, text: str, among: Sequence[str]) -> str:
     raise InputError(f"{option} {text!r} is not known: give {', '.join(among[:-1])} or {among[-1]}.")
 
 
-def picture_ending(path: Path) -> str:
+def read_picture_ending(path: Path) -> str:
     """Return the ending of a picture's name, ``.svg`` or ``.png``."""
     ending = path.suffix.lower()
     if ending not in PICTURE_ENDINGS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from threading import Event
 
-from workhold.cli.progress import progress_bar
+from workhold.cli.progress import show_progress
 
 __all__ = ["compile_kernels", "compile_seating"]
 
@@ -33,6 +33,6 @@ def compile_rooms(rooms: Sequence[str], cancel: Event) -> bool:
 
     if is_built(rooms):
         return False
-    with progress_bar(WORDS, "% of the kernels", WORDS) as progress:
+    with show_progress(WORDS, "% of the kernels", WORDS) as progress:
         build_libraries(rooms, report=lambda done: progress(done, round(100.0 * done)), cancel=cancel)
     return True

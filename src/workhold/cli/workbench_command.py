@@ -18,9 +18,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import evolve, field, frozen
 
-from workhold.cli.commands import print_remark, untyped
+from workhold.cli.commands import make_default_group, print_remark
 from workhold.cli.design_report import NEAREST_MISS, THUMBNAILS
-from workhold.cli.options import result_with
+from workhold.cli.options import read_result_with_rank
 from workhold.cli.outputs import print_json, write_output
 from workhold.cli.program_options import ProgramWords
 from workhold.cli.search_options import QueryWords
@@ -124,31 +124,31 @@ def workbench(
     if order.part is None:
         if order.chosen < 1:
             raise InputError(f"there is no fixture {order.chosen} in the list: design first.")
-        print_json(**put_in(result_with(place / RESULT, order.chosen), order.chosen, order, place))
+        print_json(**put_in(read_result_with_rank(place / RESULT, order.chosen), order.chosen, order, place))
         return
     cancel = Event()
-    Thread(target=hear_the_end, args=(cancel,), daemon=True).start()
-    query = asked(order, order.part)
+    Thread(target=watch_for_cancel, args=(cancel,), daemon=True).start()
+    query = make_query(order, order.part)
     from workhold.search.design import answer
 
     result = answer(query, cancel=cancel)
     write_output(result, str(place / RESULT), "json")
-    print_json(**design_data(result, order, place, cancel))
+    print_json(**make_design_data(result, order, place, cancel))
 
 
-def hear_the_end(cancel: Event) -> None:
+def watch_for_cancel(cancel: Event) -> None:
     """End the search when the workbench says so on standard input, or is gone; what was found is kept."""
     # Not through Python's own buffer, whose lock would outlive the end of the process.
     os.read(sys.stdin.fileno(), 1)
     cancel.set()
 
 
-def asked(order: WorkbenchOrder, part: str) -> Query:
+def make_query(order: WorkbenchOrder, part: str) -> Query:
     """Return the query of an order; the words are those of ``design``, so that both list the same."""
     from workhold.files.part.load import read_workpiece
     from workhold.model.query import Query
 
-    toolkit, tolerance = untyped(ToolkitWords, toolkit=order.toolkit).asked(MILLIMETRE)
+    toolkit, tolerance = make_default_group(ToolkitWords, toolkit=order.toolkit).read_toolkit(MILLIMETRE)
     try:
         loaded = read_workpiece(
             part, axis=order.axis, peg_height=order.peg_height, heights=toolkit.heights, called=CALLED
@@ -158,19 +158,22 @@ def asked(order: WorkbenchOrder, part: str) -> Query:
     for remark in loaded.remarks:
         print_remark(remark)
     workpiece = loaded.workpiece
-    avoid = avoided(order, workpiece)
+    avoid = list_avoided_segments(order, workpiece)
     named: dict[str, Any] = {"program": order.program, "tools": order.tools or None}
-    machined = untyped(ProgramWords, **(named | {"z_zero": f"{order.z_zero:.6f}mm"} if order.program else {}))
+    machined = make_default_group(
+        ProgramWords, **(named | {"z_zero": f"{order.z_zero:.6f}mm"} if order.program else {})
+    )
     peg_height = None if order.peg_height is None else f"{order.peg_height}mm"
-    words = untyped(QueryWords, avoid=[",".join(map(str, avoid))] if avoid else None)
-    wishes = words.asked(MILLIMETRE, machined.program is not None, machined.has_forces)
-    wishes |= machined.asked(MILLIMETRE, peg_height, workpiece)
+    words = make_default_group(QueryWords, avoid=[",".join(map(str, avoid))] if avoid else None)
+    wishes = words.read_arguments(MILLIMETRE, machined.program is not None, machined.has_forces)
+    wishes |= machined.read_query_arguments(MILLIMETRE, peg_height, workpiece)
     wishes["tolerance"] = tolerance
     return Query(workpiece, toolkit, best=order.best, **wishes)
 
 
-def avoided(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
-    """Numbers of the outline's faces that nothing may touch, from those of the document that are named.
+def list_avoided_segments(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
+    """Return the numbers of the outline's faces that nothing may touch, from those of the document that are
+    named.
 
     Refuses a face that nothing touches anyway, and an outline whose faces are no solid's.
     """
@@ -197,11 +200,11 @@ def avoided(order: WorkbenchOrder, workpiece: Workpiece) -> list[int]:
     return sorted(avoid)
 
 
-def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Event) -> dict[str, Any]:
-    """What there is to say of a search, with the fixture put in that was chosen before, or else the first."""
-    from workhold.listing.identity import entries
+def make_design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Event) -> dict[str, Any]:
+    """Return what there is to say of a search, with the fixture put in that was chosen before, or else the first."""
+    from workhold.listing.identity import make_entries
 
-    shown = entries(result)
+    shown = make_entries(result)
     first = zip(shown.index[:MOST_DRAWN].tolist(), shown.like[:MOST_DRAWN].tolist(), strict=True)
     data: dict[str, Any] = {
         "complete": bool(result.complete),
@@ -213,23 +216,23 @@ def design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel: Eve
         if result.complete and order.pictures:
             draw_nearest_miss(result, folder)
         return data
-    rank = rank_in(listed_in(folder), order.marks)
+    rank = rank_in(read_listed_fixtures(folder), order.marks)
     if rank is None and order.marks and result.complete:
         from workhold.search.design import answer
 
         longer = answer(evolve(result.query, best=MOST_SEARCHED), cancel=cancel)
         write_output(longer, str(folder / LONGER), "json")
-        data["lower"] = rank_in(listed_in(folder, LONGER), order.marks)
+        data["lower"] = rank_in(read_listed_fixtures(folder, LONGER), order.marks)
     if order.pictures:
-        from workhold.drawing.fixture_pictures import best_at_a_glance
+        from workhold.drawing.fixture_pictures import draw_best_thumbnails
 
-        svg = best_at_a_glance(result, shown)
+        svg = draw_best_thumbnails(result, shown)
         (folder / f"{THUMBNAILS}.svg").write_text(svg, encoding="utf-8")
         draw(svg, folder / f"{THUMBNAILS}.png", ACROSS_SHEET)
     return data | {"found": rank is not None} | put_in(result, rank or 1, order, folder)
 
 
-def listed_in(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
+def read_listed_fixtures(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
     fixtures: list[dict[str, Any]] = json.loads((folder / name).read_text(encoding="utf-8"))["fixtures"]
     return fixtures
 
@@ -246,13 +249,13 @@ def rank_in(fixtures: Sequence[Mapping[str, Any]], marks: str) -> int | None:
     turned = {
         rank: abs((one["pose"]["theta_deg"] - angle + 180.0) % 360.0 - 180.0)
         for rank, one in enumerate(fixtures, 1)
-        if json.loads(marks_of(one))[0] == holes
+        if json.loads(identify_fixture(one))[0] == holes
     }
     nearest = min(turned, key=turned.__getitem__, default=None)
     return nearest if nearest is not None and turned[nearest] <= MOST_TURNED else None
 
 
-def marks_of(fixture: Mapping[str, Any]) -> str:
+def identify_fixture(fixture: Mapping[str, Any]) -> str:
     """Return what a fixture of a result file is known by; where a clamp is bolted follows from the part."""
     pegs = [[peg.get("jaw"), peg.get("column"), peg.get("row")] for peg in fixture["pegs"]]
     directions = fixture.get("directions", fixture.get("direction"))
@@ -260,33 +263,33 @@ def marks_of(fixture: Mapping[str, Any]) -> str:
 
 
 def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
-    """A fixture's bodies but for the part's, and the pose of the part among them; its picture if wanted."""
+    """Return a fixture's bodies but for the part's, and the pose of the part among them; its picture if wanted."""
     from workhold.presenting.assembly import Assembly
 
     fixture = result[rank - 1]
     note, chosen = "", None
     if order.supports:
-        chosen, note = supported(fixture, result.query)
-    assembly = Assembly.of(fixture, result, {}, chosen)
+        chosen, note = find_supports_under(fixture, result.query)
+    assembly = Assembly.from_fixture(fixture, result, {}, chosen)
     if order.pictures:
         from workhold.drawing.fixture_pictures import draw_fixture
-        from workhold.drawing.path_drawn import planned_path
+        from workhold.drawing.path_drawn import make_planned_path
 
-        path = planned_path(result, rank - 1)
+        path = make_planned_path(result, rank - 1)
         svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", path=path)
         draw(svg, folder / f"{CHOSEN}.png", ACROSS_PAGE)
     pose = assembly.fixture.pose
     return {
         "rank": rank,
-        "marks": marks_of(listed_in(folder)[rank - 1]),
+        "marks": identify_fixture(read_listed_fixtures(folder)[rank - 1]),
         "holes": [peg.hole for peg in fixture.pegs],
         "note": note,
         "pose": {"theta_deg": pose.theta_deg, "x": pose.x, "y": pose.y},
-        "bodies": [body_data(body) for body in assembly.bodies[1:]],
+        "bodies": [convert_body_to_prisms(body) for body in assembly.bodies[1:]],
     }
 
 
-def supported(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
+def find_supports_under(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
     """Return the best three supports under a fixture with a clamp on top; where there are none, why."""
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import support_with_smaller_sizes, try_smaller_requests
@@ -308,22 +311,27 @@ def draw_nearest_miss(result: Result, folder: Path) -> None:
 
 def draw(svg: str, path: Path, width: int) -> None:
     """Draw SVG text as a PNG of a width in pixels."""
-    from workhold.drawing.render import svg_to_png
+    from workhold.drawing.render import convert_svg_to_png
 
-    path.write_bytes(svg_to_png(svg, width))
+    path.write_bytes(convert_svg_to_png(svg, width))
 
 
-def body_data(body: FixtureBody) -> dict[str, Any]:
+def convert_body_to_prisms(body: FixtureBody) -> dict[str, Any]:
     """Return a body as upright prisms: between two heights, over a border with holes in it."""
     slabs = [
-        {"low": one.low, "high": one.high, "borders": [loop_data(loop) for loop in (one.outer, *one.holes)]}
+        {
+            "low": one.low,
+            "high": one.high,
+            "borders": [convert_loop_to_numbers(loop) for loop in (one.outer, *one.holes)],
+        }
         for one in body.slabs
     ]
     return {"name": body.name, "slabs": slabs}
 
 
-def loop_data(segments: Iterable[Segment]) -> list[list[float]]:
-    """A border, segment by segment: a line's ends, or the centre, radius and angles of an arc, from and to.
+def convert_loop_to_numbers(segments: Iterable[Segment]) -> list[list[float]]:
+    """Return a border, segment by segment: a line's ends, or the centre, radius and angles of an arc, from
+    and to.
 
     Angles are in radians and counted counter-clockwise; an arc that is a circle ends where it began.
     """

@@ -8,26 +8,26 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import option, spread
-from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, asked_rank, result_with
+from workhold.cli.commands import make_option, spread_option_groups
+from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import (
     FORCE,
     JSON,
-    asked_picture,
     print_json,
     print_written,
+    read_picture_path,
     refuse_output,
     write_picture,
 )
 from workhold.cli.table import Table, print_tables
 from workhold.cli.toolkit_options import ToolkitWords
 from workhold.cli.values import (
-    length,
-    length_from_zero,
-    length_unit,
-    optional_count,
-    optional_positive_length,
-    positive_number,
+    read_length,
+    read_length_from_zero,
+    read_optional_count,
+    read_optional_positive_length,
+    read_positive_number,
+    read_unit,
 )
 from workhold.errors import InputError
 
@@ -45,17 +45,19 @@ __all__ = ["copies", "drill"]
 class CopiesWords:
     """The options of a plate with copies of a fixture, as typed."""
 
-    columns: str | None = option(
+    columns: str | None = make_option(
         None, "N", "Columns of holes of the plate; must be given where the result does not say."
     )
-    rows: str | None = option(
+    rows: str | None = make_option(
         None, "N", "Rows of holes of the plate; must be given where the result does not say."
     )
-    gap: str = option(
+    gap: str = make_option(
         None, "LENGTH", "Smallest distance between a part and anything of another copy.", default="1mm"
     )
-    time_limit: str = option(None, "SECONDS", "How long to prove that no more fit.", default="60")
-    draw: str | None = option(None, "FILE", "Draw the plate into this file, whose name ends in .svg or .png.")
+    time_limit: str = make_option(None, "SECONDS", "How long to prove that no more fit.", default="60")
+    draw: str | None = make_option(
+        None, "FILE", "Draw the plate into this file, whose name ends in .svg or .png."
+    )
     force: bool = FORCE
     unit: str | None = SHOWN_UNIT
     json_: bool = JSON
@@ -83,7 +85,7 @@ class CopiesTask:
     unit: Unit
 
 
-@spread
+@spread_option_groups
 def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesWords) -> None:
     """Report how many copies of fixture N a plate holds at once, and where each stands.
 
@@ -92,30 +94,30 @@ def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesWo
 
     Example: workhold copies part.json 1 --columns 20 --rows 15 --draw plate.png
     """
-    asked = parse_copies(result_file, asked_rank(number), words)
+    asked = parse_copies(result_file, read_rank(number), words)
     report_copies(asked, *ask_copies(asked))
 
 
 def parse_copies(result_file: str, rank: int, words: CopiesWords) -> CopiesTask:
     """Read what was typed, and the fixture."""
-    shown = length_unit(words.unit)
-    size = optional_count("--columns", words.columns), optional_count("--rows", words.rows)
-    gap = length_from_zero("--gap", words.gap, shown)
-    seconds = positive_number("--time-limit", words.time_limit)
-    picture = asked_picture(words.draw, (result_file,), words.force)
-    result = result_with(result_file, rank)
-    return CopiesTask(result, rank, plate_size(result, size), gap, seconds, picture, words, shown)
+    shown = read_unit(words.unit)
+    size = read_optional_count("--columns", words.columns), read_optional_count("--rows", words.rows)
+    gap = read_length_from_zero("--gap", words.gap, shown)
+    seconds = read_positive_number("--time-limit", words.time_limit)
+    picture = read_picture_path(words.draw, (result_file,), words.force)
+    result = read_result_with_rank(result_file, rank)
+    return CopiesTask(result, rank, choose_plate_size(result, size), gap, seconds, picture, words, shown)
 
 
 def ask_copies(asked: CopiesTask) -> tuple[list[Fixture], Packing]:
     """Find the copies that fit on the plate, and how many can be proven to."""
-    from workhold.family.copies import copies_of, packing_of
+    from workhold.family.copies import make_copies, pack_copies
 
     result, rank = asked.result, asked.rank
     held = result.workpiece, result.toolkit
-    packing = packing_of(result[rank - 1], *held, *asked.size, asked.gap, asked.seconds)
+    packing = pack_copies(result[rank - 1], *held, *asked.size, asked.gap, asked.seconds)
     row = result.table.take(slice(rank - 1, rank))
-    return copies_of(row, result.toolkit, result.workpiece, packing), packing
+    return make_copies(row, result.toolkit, result.workpiece, packing), packing
 
 
 def report_copies(asked: CopiesTask, found: list[Fixture], packing: Packing) -> None:
@@ -136,7 +138,7 @@ def report_copies(asked: CopiesTask, found: list[Fixture], packing: Packing) -> 
         print_tables(f"Written to {draw}.")
 
 
-def plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
+def choose_plate_size(result: Result, asked: tuple[int | None, int | None]) -> tuple[int, int]:
     """Return columns and rows of the plate: those asked for, or those of the result."""
     from workhold.fixels.making import refuse_many_holes
 
@@ -176,24 +178,24 @@ ENDINGS = (".dxf", ".step", ".stp")
 class DrillWords:
     """The options of the plates, as typed; None for those not given."""
 
-    bolts: str | None = option(
+    bolts: str | None = make_option(
         PLATES, "X,Y;X,Y", "Where bolts hold each plate, from the centre of its hole A1: 5,-12;5,112."
     )
-    bolt_diameter: str | None = option(PLATES, "LENGTH", "Diameter of the holes for the bolts.")
-    hole_diameter: str | None = option(
+    bolt_diameter: str | None = make_option(PLATES, "LENGTH", "Diameter of the holes for the bolts.")
+    hole_diameter: str | None = make_option(
         PLATES,
         "LENGTH",
         "Diameter of the dowel holes; the middle of what --vise says, or that of the pegs, if not given.",
     )
-    edge: str | None = option(
+    edge: str | None = make_option(
         PLATES, "LENGTH", "From the outermost dowel holes to the plate's edges; half a pitch if not given."
     )
-    thickness: str | None = option(
+    thickness: str | None = make_option(
         PLATES, "LENGTH", "Thickness of the plates in a .step file; 10 mm if not given."
     )
 
 
-@spread
+@spread_option_groups
 def drill(
     *,
     out: Annotated[
@@ -214,21 +216,21 @@ def drill(
 
     Example: workhold drill --vise plate-20mm --rows 6 --bolts '10,10;10,90' --bolt-diameter 6.6 -o plates.dxf
     """
-    path, shown = Path(out), length_unit(unit)
+    path, shown = Path(out), read_unit(unit)
     if path.suffix.lower() not in ENDINGS:
         raise InputError(f"-o {path} names no drawing of plates: let the name end in .dxf or .step.")
-    thickness = optional_positive_length("--thickness", words.thickness, shown)
+    thickness = read_optional_positive_length("--thickness", words.thickness, shown)
     refuse_output(path, (held_in.vise,), force)
-    write_plates(path, asked_plates(held_in, words, shown), thickness)
+    write_plates(path, make_asked_plates(held_in, words, shown), thickness)
     print_written(json_, f"Written to {path}.", path)
 
 
-def asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[JawPlate, ...]:
+def make_asked_plates(held_in: ToolkitWords, words: DrillWords, unit: Unit) -> tuple[JawPlate, ...]:
     """Return the plates of the vise that was typed; refuse one whose plates have no end."""
-    bolts = asked_bolts(words.bolts, words.bolt_diameter, unit)
-    diameter = optional_positive_length("--hole-diameter", words.hole_diameter, unit)
-    edge = optional_positive_length("--edge", words.edge, unit)
-    toolkit, tolerance = held_in.asked(unit)
+    bolts = read_bolts(words.bolts, words.bolt_diameter, unit)
+    diameter = read_optional_positive_length("--hole-diameter", words.hole_diameter, unit)
+    edge = read_optional_positive_length("--edge", words.edge, unit)
+    toolkit, tolerance = held_in.read_toolkit(unit)
     if any(carrier.rows is None or carrier.columns is None for carrier in toolkit.carriers):
         raise InputError(
             "how many columns and rows of holes the plates have is not given: add --columns and --rows."
@@ -244,20 +246,20 @@ def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | No
     from workhold.files.atomic import write_bytes
 
     if path.suffix.lower() == ".dxf":
-        from workhold.files.dxf.writer import plates_dxf
+        from workhold.files.dxf.writer import make_plates_dxf
 
-        write_bytes(path, plates_dxf(plates))
+        write_bytes(path, make_plates_dxf(plates))
     else:
-        from workhold.files.step.writer import plates_step
+        from workhold.files.step.writer import make_plates_step
 
-        write_bytes(path, plates_step(plates, thickness))
+        write_bytes(path, make_plates_step(plates, thickness))
 
 
-def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
+def read_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
     """Read the bolts asked for; None where there are none, and refuse one of the two options alone."""
     if places is None and diameter is None:
         return None
-    size = optional_positive_length("--bolt-diameter", diameter, unit)
+    size = read_optional_positive_length("--bolt-diameter", diameter, unit)
     if places is None or size is None:
         raise InputError("bolts need --bolts and --bolt-diameter: give both, or neither.")
     from workhold.model.dowels import Bolts
@@ -267,6 +269,6 @@ def asked_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts |
         numbers = words.split(",")
         if len(numbers) != 2:
             raise InputError(f"--bolts {places!r} is no list of places: give X,Y;X,Y, such as 5,-12;5,112.")
-        x, y = (length("--bolts", number, unit) for number in numbers)
+        x, y = (read_length("--bolts", number, unit) for number in numbers)
         points.append((x, y))
     return Bolts(size, tuple(points))

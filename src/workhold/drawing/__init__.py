@@ -6,8 +6,8 @@ attribute ``data-model-to-page`` as an SVG matrix.
 
 from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, draw_fixture, draw_thumbnails
 from workhold.drawing.part_pictures import draw_features
-from workhold.drawing.render import render, svg_to_png
-from workhold.drawing.sheet import draw_sheet, result_sheet
+from workhold.drawing.render import convert_svg_to_png, render
+from workhold.drawing.sheet import draw_setup_sheet, draw_sheet
 from workhold.drawing.sheet_facts import SheetDetails
 
 __all__ = [
@@ -18,6 +18,6 @@ __all__ = [
     "draw_sheet",
     "draw_thumbnails",
     "render",
-    "result_sheet",
-    "svg_to_png",
+    "draw_setup_sheet",
+    "convert_svg_to_png",
 ]

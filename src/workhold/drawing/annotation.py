@@ -21,7 +21,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.drawing.scene import BLACK, Box, LengthUnit, Scene, text_width
+from workhold.drawing.scene import BLACK, Box, LengthUnit, Scene, measure_text
 from workhold.geometry.segment import Point
 
 __all__ = [
@@ -29,11 +29,11 @@ __all__ = [
     "Label",
     "LabelPlacer",
     "Place",
-    "around",
-    "dimension",
-    "dimension_box",
-    "dimension_line",
-    "joined",
+    "make_label_around",
+    "draw_dimension",
+    "compute_dimension_box",
+    "draw_dimension_line",
+    "join_labels",
     "scale_bar",
 ]
 
@@ -44,7 +44,7 @@ OUTSIDE_ARROW, HEAD = 24.0, 5.0
 PAST_END = 8.0
 
 
-def dimension_line(
+def draw_dimension_line(
     scene: Scene,
     start: Point,
     end: Point,
@@ -52,7 +52,7 @@ def dimension_line(
     outside: float = OUTSIDE_ARROW,
     head: float = 11.0,
 ) -> Point:
-    """Draws a dimension line between two page points; returns its unit direction.
+    """Draw a dimension line between two page points; return its unit direction.
 
     In page units, a line shorter than ``tight`` has its arrows outside, these reach ``outside`` past the
     ends, and heads are ``head`` long.
@@ -63,17 +63,17 @@ def dimension_line(
         middle = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2)
         tails = (middle, middle)
     else:
-        scene.line([start, end], BLACK, 1.0)
+        scene.add_line([start, end], BLACK, 1.0)
         tails = (
             (start[0] - outside * ux, start[1] - outside * uy),
             (end[0] + outside * ux, end[1] + outside * uy),
         )
     for tail, tip in zip(tails, (start, end), strict=True):
-        scene.arrow(tail, tip, BLACK, 1.0, head)
+        scene.add_arrow(tail, tip, BLACK, 1.0, head)
     return ux, uy
 
 
-def dimension(
+def draw_dimension(
     scene: Scene,
     start: Point,
     end: Point,
@@ -82,30 +82,30 @@ def dimension(
     bold: bool = False,
     past: Literal["upper", "lower"] | None = None,
 ) -> Box:
-    """Draws a dimension line between two page points, its text above it, readable from below or the right.
+    """Draw a dimension line between two page points, its text above it, readable from below or the right.
 
     ``past`` is the end of an upright line past which a text longer than the line is written. Returns the box
     of the text.
     """
-    ux, uy = dimension_line(scene, start, end)
-    width = text_width(text, size, bold)
+    ux, uy = draw_dimension_line(scene, start, end)
+    width = measure_text(text, size, bold)
     x, y = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
     if abs(ux) >= abs(uy):
         middle = (x + 0.75 * size * uy, y - 0.85 * size * abs(ux))
-        scene.text(middle, text, size, "middle", bold, halo=3)
+        scene.add_text(middle, text, size, "middle", bold, halo=3)
         return Box.about(middle, width, size)
     if past is not None and width > dist(start, end):
         away = width / 2 + PAST_END
         y = min(start[1], end[1]) - away if past == "upper" else max(start[1], end[1]) + away
     middle = (min(start[0], end[0]) - 0.75 * size, y)
-    scene.text(middle, text, size, "middle", bold, halo=3, turned=90)
+    scene.add_text(middle, text, size, "middle", bold, halo=3, turned=90)
     return Box.about(middle, size, width)
 
 
-def dimension_box(start: Point, end: Point) -> Box:
-    """The page box of a level or upright dimension line with its arrows, without its text.
+def compute_dimension_box(start: Point, end: Point) -> Box:
+    """Return the page box of a level or upright dimension line with its arrows, without its text.
 
-    >>> dimension_box((10.0, 0.0), (20.0, 0.0)).x0
+    >>> compute_dimension_box((10.0, 0.0), (20.0, 0.0)).x0
     -19.0
     """
     low, high = (min(start[0], end[0]), min(start[1], end[1])), (max(start[0], end[0]), max(start[1], end[1]))
@@ -116,7 +116,7 @@ def dimension_box(start: Point, end: Point) -> Box:
 
 
 def round_length(length: float) -> float:
-    """The largest of 1, 2 or 5 times a power of ten that is not above ``length``.
+    """Return the largest of 1, 2 or 5 times a power of ten that is not above ``length``.
 
     >>> round_length(37.0), round_length(0.9)
     (20.0, 0.5)
@@ -134,7 +134,7 @@ def scale_bar(
     size: float = 12.0,
     more: str = "",
 ) -> float:
-    """Draws a bar of a round length with its lower left corner at a page point; returns its total width.
+    """Draw a bar of a round length with its lower left corner at a page point; return its total width.
 
     Parameters
     ----------
@@ -151,10 +151,10 @@ def scale_bar(
     for k in range(4):
         left, right = x + k * part, x + (k + 1) * part
         corners = [(left, y - 6), (right, y - 6), (right, y), (left, y)]
-        bar.polygon(corners, BLACK if k % 2 == 0 else "#ffffff", BLACK, 0.8)
+        bar.add_polygon(corners, BLACK if k % 2 == 0 else "#ffffff", BLACK, 0.8)
     text = f"{length:g} {lengths.sign}{more}"
-    bar.text((x + 4 * part + 8, y - 3), text, size)
-    return 4 * part + 8 + text_width(text, size)
+    bar.add_text((x + 4 * part + 8, y - 3), text, size)
+    return 4 * part + 8 + measure_text(text, size)
 
 
 Array = NDArray[np.float64]
@@ -198,8 +198,8 @@ class Label:
         boxes = np.vstack([self.boxes, np.hstack([self.anchors, self.anchors])])
         return np.concatenate([boxes[:, :2].min(axis=0) - GAP, boxes[:, 2:].max(axis=0) + GAP])
 
-    def kept(self, costs: Array) -> Label:
-        """The label with new costs and only its cheapest candidates."""
+    def keep_cheapest(self, costs: Array) -> Label:
+        """Return the label with new costs and only its cheapest candidates."""
         order = np.argsort(costs, kind="stable")[:MOST_CANDIDATES]
         return Label(self.width, self.height, self.centers[order], self.anchors[order], costs[order])
 
@@ -211,8 +211,8 @@ class Place:
     box: Box
     anchor: Point
 
-    def leader(self, radius: float = 0.0) -> list[Point]:
-        """The ends of the straight leader, from a sign of a radius about the anchor to the rim of the box."""
+    def compute_leader(self, radius: float = 0.0) -> list[Point]:
+        """Return the ends of the straight leader, from a sign of a radius about the anchor to the rim of the box."""
         (x, y), (cx, cy) = self.anchor, self.box.center
         dx, dy = x - cx, y - cy
         share = min(self.box.width / 2 / max(abs(dx), 1e-9), self.box.height / 2 / max(abs(dy), 1e-9), 1.0)
@@ -221,7 +221,7 @@ class Place:
         return [(x + off * (end[0] - x), y + off * (end[1] - y)), end]
 
 
-def around(
+def make_label_around(
     anchor: Point,
     direction: float,
     size: tuple[float, float],
@@ -230,7 +230,7 @@ def around(
     extra: float = 0.0,
     turn_cost: float = 6.0,
 ) -> Label:
-    """A label with candidates around an anchor.
+    """Return a label with candidates around an anchor.
 
     The preferred direction, and turns away from it, are in radians on the page (y down). Width and height of
     the label, and distances from the anchor to its rim, are in page units. Each page unit costs 0.3, each
@@ -246,8 +246,8 @@ def around(
     return Label(width, height, anchors + reach[:, None] * ways, anchors, costs)
 
 
-def joined(labels: Sequence[Label]) -> Label:
-    """One label of the size of the first with the candidates of all."""
+def join_labels(labels: Sequence[Label]) -> Label:
+    """Return one label of the size of the first with the candidates of all."""
     return Label(
         labels[0].width,
         labels[0].height,
@@ -272,57 +272,57 @@ class LabelPlacer:
         self.wall_starts, self.wall_ends = np.zeros((0, 2)), np.zeros((0, 2))
 
     def avoid_ink(self, points: ArrayLike, price: float) -> None:
-        """Sets the price of covering each of some points, (N, 2) page units."""
+        """Set the price of covering each of some points, (N, 2) page units."""
         array = np.asarray(points, dtype=np.float64).reshape(-1, 2)
         self.points = np.vstack([self.points, array])
         self.prices = np.concatenate([self.prices, np.full(len(array), price)])
 
     def avoid_box(self, box: Box) -> None:
-        """Sets a high price for covering a box."""
+        """Set a high price for covering a box."""
         self.boxes = np.vstack([self.boxes, [box.x0, box.y0, box.x1, box.y1]])
 
     def avoid_line(self, start: Point, end: Point, price: float, step: float = 3.0) -> None:
-        """Sets the price of covering a line, for every ``step`` page units."""
+        """Set the price of covering a line, for every ``step`` page units."""
         count = max(2, int(np.hypot(end[0] - start[0], end[1] - start[1]) / step))
         shares = np.linspace(0.0, 1.0, count)[:, None]
         self.avoid_ink((1 - shares) * np.array(start) + shares * np.array(end), price)
 
     def avoid_walls(self, points: Array) -> None:
-        """Sets a price for leaders across an open polyline, (N, 2) page units."""
+        """Set a price for leaders across an open polyline, (N, 2) page units."""
         self.wall_starts = np.vstack([self.wall_starts, points[:-1]])
         self.wall_ends = np.vstack([self.wall_ends, points[1:]])
 
-    def fixed_costs(self, label: Label) -> Array:
-        """(C,) what the candidates cost before other labels are there."""
+    def compute_fixed_costs(self, label: Label) -> Array:
+        """Return (C,) what the candidates cost before other labels are there."""
         boxes = label.boxes
         low, high = boxes[:, :2], boxes[:, 2:]
         bounds = self.bounds
         inside = (low >= [bounds.x0, bounds.y0]).all(axis=1) & (high <= [bounds.x1, bounds.y1]).all(axis=1)
         reach = label.reach
-        near = meeting(reach, np.hstack([self.points, self.points]))
+        near = find_boxes_met(reach, np.hstack([self.points, self.points]))
         (x, y), prices = self.points[near].T, self.prices[near]
         covered = (x > low[:, :1] - 2) & (x < high[:, :1] + 2) & (y > low[:, 1:] - 2) & (y < high[:, 1:] + 2)
         costs: Array = label.costs + np.where(inside, 0.0, OUTSIDE) + covered @ prices
-        costs += COLLISION * overlaps(boxes, self.boxes).sum(axis=1)
-        costs += STRIKE * entries(label.anchors, label.centers, self.boxes).sum(axis=1)
+        costs += COLLISION * compute_overlaps(boxes, self.boxes).sum(axis=1)
+        costs += STRIKE * find_entries_into_boxes(label.anchors, label.centers, self.boxes).sum(axis=1)
         # A leader begins on the outline itself, hence not quite at its anchor.
         starts = label.anchors + 0.1 * (label.centers - label.anchors)
         first, last = self.wall_starts, self.wall_ends
-        near = meeting(reach, np.hstack([np.minimum(first, last), np.maximum(first, last)]))
-        costs += WALL * crossings(starts, label.centers, first[near], last[near]).sum(axis=1)
+        near = find_boxes_met(reach, np.hstack([np.minimum(first, last), np.maximum(first, last)]))
+        costs += WALL * find_crossings(starts, label.centers, first[near], last[near]).sum(axis=1)
         return costs
 
     def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[Place]:
-        """Places labels together: one after another, then each anew among the others until nothing moves."""
-        kept = [label.kept(self.fixed_costs(label)) for label in labels]
+        """Return the places labels together: one after another, then each anew among the others until nothing moves."""
+        kept = [label.keep_cheapest(self.compute_fixed_costs(label)) for label in labels]
         reaches = np.array([label.reach for label in kept]).reshape(-1, 4)
         boxes, anchors = np.zeros((len(kept), 4)), np.zeros((len(kept), 2))
         chosen = np.full(len(kept), -1)
         for _ in range(1 + sweeps):
             before = chosen.copy()
             for k, label in enumerate(kept):
-                others = (chosen >= 0) & (np.arange(len(kept)) != k) & meeting(reaches[k], reaches)
-                costs = label.costs + mutual_costs(label, boxes[others], anchors[others])
+                others = (chosen >= 0) & (np.arange(len(kept)) != k) & find_boxes_met(reaches[k], reaches)
+                costs = label.costs + compute_mutual_costs(label, boxes[others], anchors[others])
                 chosen[k] = best = int(np.argmin(costs))
                 boxes[k], anchors[k] = label.boxes[best], label.anchors[best]
             if (chosen == before).all():
@@ -333,23 +333,23 @@ class LabelPlacer:
         ]
 
 
-def mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
-    """(C,) costs of a label's candidates beside N placed labels, by their (N, 4) boxes and (N, 2) anchors."""
+def compute_mutual_costs(label: Label, boxes: Array, anchors: Array) -> Array:
+    """Return (C,) costs of a label's candidates beside N placed labels, by their (N, 4) boxes and (N, 2) anchors."""
     middles = (boxes[:, :2] + boxes[:, 2:]) / 2
-    costs: Array = COLLISION * overlaps(label.boxes, boxes).sum(axis=1)
-    costs += CROSSING * crossings(label.anchors, label.centers, anchors, middles).sum(axis=1)
-    costs += CROSSING * entries(label.anchors, label.centers, boxes).sum(axis=1)
-    costs += CROSSING * entries(anchors, middles, label.boxes).sum(axis=0)
+    costs: Array = COLLISION * compute_overlaps(label.boxes, boxes).sum(axis=1)
+    costs += CROSSING * find_crossings(label.anchors, label.centers, anchors, middles).sum(axis=1)
+    costs += CROSSING * find_entries_into_boxes(label.anchors, label.centers, boxes).sum(axis=1)
+    costs += CROSSING * find_entries_into_boxes(anchors, middles, label.boxes).sum(axis=0)
     return costs
 
 
-def meeting(box: Array, others: Array) -> NDArray[np.bool_]:
-    """(N,) which of (N, 4) boxes a (4,) box meets."""
+def find_boxes_met(box: Array, others: Array) -> NDArray[np.bool_]:
+    """Return (N,) which of (N, 4) boxes a (4,) box meets."""
     return np.asarray((others[:, :2] <= box[2:]).all(axis=1) & (others[:, 2:] >= box[:2]).all(axis=1))
 
 
-def overlaps(boxes: Array, others: Array) -> Array:
-    """(C, N) 0 for (C, 4) boxes well clear of (N, 4) others, else 1 plus the share of the box covered."""
+def compute_overlaps(boxes: Array, others: Array) -> Array:
+    """Return (C, N) 0 for (C, 4) boxes well clear of (N, 4) others, else 1 plus the share of the box covered."""
     low = np.maximum(boxes[:, None, :2], others[None, :, :2])
     high = np.minimum(boxes[:, None, 2:], others[None, :, 2:])
     sides = np.maximum(high - low + GAP, 0.0)
@@ -358,8 +358,8 @@ def overlaps(boxes: Array, others: Array) -> Array:
     return np.where(shared > 0, 1 + shared / area[:, None], 0.0)
 
 
-def crossings(starts: Array, ends: Array, other_starts: Array, other_ends: Array) -> NDArray[np.bool_]:
-    """(C, N) whether straight pieces cross others."""
+def find_crossings(starts: Array, ends: Array, other_starts: Array, other_ends: Array) -> NDArray[np.bool_]:
+    """Return (C, N) whether straight pieces cross others."""
 
     def side(p: Array, q: Array, r: Array) -> Array:
         cross: Array = (q - p)[..., 0] * (r - p)[..., 1] - (q - p)[..., 1] * (r - p)[..., 0]
@@ -369,8 +369,8 @@ def crossings(starts: Array, ends: Array, other_starts: Array, other_ends: Array
     return (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
 
 
-def entries(starts: Array, ends: Array, boxes: Array) -> NDArray[np.bool_]:
-    """(C, N) whether straight pieces enter boxes (clipping after Liang and Barsky, 1984)."""
+def find_entries_into_boxes(starts: Array, ends: Array, boxes: Array) -> NDArray[np.bool_]:
+    """Return (C, N) whether straight pieces enter boxes (clipping after Liang and Barsky, 1984)."""
     step = ends - starts
     step = np.where(np.abs(step) < 1e-9, 1e-9, step)[:, None]
     one = (boxes[None, :, :2] - starts[:, None]) / step

@@ -22,11 +22,11 @@ from workhold.drawing.carriers import (
     draw_plate,
     draw_push,
     draw_wall,
-    most_holes,
+    limit_holes_drawn,
 )
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
-from workhold.fixels.pegs import peg_outline
+from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.fixture import Fixture
@@ -42,19 +42,19 @@ __all__ = [
     "PEG_FILL",
     "TOUCHED",
     "Bench",
-    "bench_of",
-    "contact_of",
+    "make_bench",
+    "find_contact",
     "draw_bench",
     "draw_inset",
     "draw_part",
     "draw_pegs",
     "draw_zero",
-    "face_of",
-    "force_arrow",
-    "outline_path",
-    "sampled",
-    "sampled_loop",
-    "segment_path",
+    "find_face",
+    "compute_force_arrow",
+    "make_outline_path",
+    "sample_segments",
+    "sample_loop",
+    "make_segment_path",
 ]
 
 # An SVG arc is given by its ends and radius. With a larger sweep its centre suffers from the rounding of the
@@ -62,8 +62,8 @@ __all__ = [
 LONGEST_SWEEP = 2 * pi / 3
 
 
-def segment_path(segment: Segment, view: View, moved: bool = True) -> str:
-    """SVG path data of one segment, beginning with a move to its start unless ``moved`` is False."""
+def make_segment_path(segment: Segment, view: View, moved: bool = True) -> str:
+    """Return SVG path data of one segment, beginning with a move to its start unless ``moved`` is False."""
     start = "M{} {}".format(*map(number, view(segment.start))) if moved else ""
     if isinstance(segment, Line):
         return start + "L{} {}".format(*map(number, view(segment.end)))
@@ -78,15 +78,16 @@ def segment_path(segment: Segment, view: View, moved: bool = True) -> str:
     return start
 
 
-def outline_path(loops: Sequence[Sequence[Segment]], view: View) -> str:
-    """SVG path data of closed loops; fill it by the even-odd rule."""
+def make_outline_path(loops: Sequence[Sequence[Segment]], view: View) -> str:
+    """Return SVG path data of closed loops; fill it by the even-odd rule."""
     return " ".join(
-        "".join(segment_path(segment, view, k == 0) for k, segment in enumerate(loop)) + "Z" for loop in loops
+        "".join(make_segment_path(segment, view, k == 0) for k, segment in enumerate(loop)) + "Z"
+        for loop in loops
     )
 
 
-def sampled(segments: Iterable[Segment], view: View, step: float) -> NDArray[np.float64]:
-    """(N, 2) page points along segments, about ``step`` page units apart, both ends included."""
+def sample_segments(segments: Iterable[Segment], view: View, step: float) -> NDArray[np.float64]:
+    """Return (N, 2) page points along segments, about ``step`` page units apart, both ends included."""
     points: list[Point] = []
     for segment in segments:
         count = max(1, min(400, ceil(segment.length * view.scale / step)))
@@ -95,45 +96,45 @@ def sampled(segments: Iterable[Segment], view: View, step: float) -> NDArray[np.
     return np.array(points, dtype=np.float64).reshape(-1, 2)
 
 
-def sampled_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np.float64]:
-    """(N, 2) page points around a closed loop in order, about ``step`` apart; the last is the first."""
+def sample_loop(loop: Sequence[Segment], view: View, step: float) -> NDArray[np.float64]:
+    """Return (N, 2) page points around a closed loop in order, about ``step`` apart; the last is the first."""
     runs = []
     for segment in loop:
-        points = sampled([segment], view, step)
+        points = sample_segments([segment], view, step)
         backwards = isinstance(segment, Arc) and segment.sign < 0
         runs.append(points[::-1] if backwards else points)
     return np.vstack(runs)
 
 
-def face_of(workpiece: Workpiece, number: int) -> Segment:
-    """The whole face that a segment number belongs to."""
+def find_face(workpiece: Workpiece, number: int) -> Segment:
+    """Return the whole face that a segment number belongs to."""
     return next(face.segment for face in workpiece.numbered.faces if number in face.segments)
 
 
-def contact_of(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
-    """The point where a contact of a kind touches a face, and the outward unit normal there.
+def find_contact(kind: ContactKind, center: Point, face: Segment) -> tuple[Point, Point]:
+    """Return the point where a contact of a kind touches a face, and the outward unit normal there.
 
     Its centre and the face are in one frame, in mm.
     """
     return CONTACTS[kind](center, face)
 
 
-def wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
-    """The contact of a part with a wall below it, where its end is."""
+def find_wall_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+    """Return the contact of a part with a wall below it, where its end is."""
     return center, (0.0, -1.0)
 
 
-def pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
+def find_pin_contact(center: Point, face: Segment) -> tuple[Point, Point]:
     half = face.half_extent
     parameter = max(-half, min(half, face.parameter(center)))
     return face.at(parameter), face.normal(parameter)
 
 
 CONTACTS: Mapping[ContactKind, Callable[[Point, Segment], tuple[Point, Point]]] = {
-    ROUND_PIN: pin_contact,
-    FLAT_PIN: pin_contact,
-    CLAMP_TIP: pin_contact,
-    WALL_END: wall_contact,
+    ROUND_PIN: find_pin_contact,
+    FLAT_PIN: find_pin_contact,
+    CLAMP_TIP: find_pin_contact,
+    WALL_END: find_wall_contact,
 }
 
 
@@ -176,17 +177,17 @@ class Bench:
         """The extent of all that shows, in mm."""
         return self.shown.extent
 
-    def outlines(self, view: View, step: float) -> list[NDArray[np.float64]]:
-        """(N, 2) page points around each loop of the part, about ``step`` page units apart."""
-        return [sampled_loop(loop, view, step) for loop in self.loops]
+    def sample_outlines(self, view: View, step: float) -> list[NDArray[np.float64]]:
+        """Return (N, 2) page points around each loop of the part, about ``step`` page units apart."""
+        return [sample_loop(loop, view, step) for loop in self.loops]
 
     @property
     def touching(self) -> list[int]:
         """The pegs that touch one face each: all but corners on a wall."""
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
-    def touched_piece(self, index: int) -> Segment:
-        """The face that a contact is on; of one flush on a wall the piece between the ends of the wall."""
+    def find_touched_piece(self, index: int) -> Segment:
+        """Return the face that a contact is on; of one flush on a wall the piece between the ends of the wall."""
         face, walls = self.faces[index], self.on_walls
         if index not in walls or isinstance(face, Arc):
             return face
@@ -198,27 +199,27 @@ class Bench:
     @property
     def on_walls(self) -> list[int]:
         pegs = enumerate(self.fixture.pegs)
-        return [k for k, peg in pegs if self.toolkit.carrier(peg.carrier).contact is WALL_END]
+        return [k for k, peg in pegs if self.toolkit.find_carrier(peg.carrier).contact is WALL_END]
 
     @property
     def placed(self) -> list[int]:
         """The pegs and clamps themselves: all but the ends of the contact with a wall."""
         return [index for index, peg in enumerate(self.fixture.pegs) if peg in self.fixture.placed]
 
-    def radius(self, view: View, index: int) -> float:
-        radius = self.toolkit.carrier(self.fixture.pegs[index].carrier).peg_radius * view.scale
+    def get_page_radius(self, view: View, index: int) -> float:
+        radius = self.toolkit.find_carrier(self.fixture.pegs[index].carrier).peg_radius * view.scale
         return radius if self.is_exact and radius > 0 else max(radius, THINNEST_PEG)
 
 
-def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
-    """Computes what there is to draw of a fixture, in the vise frame."""
+def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
+    """Compute what there is to draw of a fixture, in the vise frame."""
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
-    faces = [pose.carry(face_of(workpiece, peg.face)) for peg in fixture.pegs]
+    faces = [pose.carry(find_face(workpiece, peg.face)) for peg in fixture.pegs]
     hold = fixture.hold
     gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
     contacts = [
-        contact_of(toolkit.carrier(peg.carrier).contact, (peg.x, peg.y), face)
+        find_contact(toolkit.find_carrier(peg.carrier).contact, (peg.x, peg.y), face)
         for peg, face in zip(fixture.pegs, faces, strict=True)
     ]
     own = [
@@ -226,14 +227,14 @@ def bench_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bench:
         for one in workpiece.every_outline[1:]
         for loop in one.loop_segments
     ]
-    held = {number: pose.carry(face_of(workpiece, number)) for number in gripped}
+    held = {number: pose.carry(find_face(workpiece, number)) for number in gripped}
     return Bench(
         fixture, toolkit, loops, faces, contacts, shown(fixture, toolkit, workpiece), own, gripped=held
     )
 
 
-def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
-    """Tail (the contact) and tip of a contact force on the page.
+def compute_force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[Point, Point]:
+    """Return the tail (the contact) and tip of a contact force on the page.
 
     The largest force is ``longest`` page units long. A force that would have to pull points away from the
     part.
@@ -249,7 +250,7 @@ def force_arrow(bench: Bench, index: int, view: View, longest: float) -> tuple[P
 def draw_bench(
     scene: Scene, bench: Bench, view: View, weight: float = 1.0, longest: float = 62.0, axes: bool = True
 ) -> None:
-    """Draws plates, holes, part, touched faces, forces and pegs.
+    """Draw plates, holes, part, touched faces, forces and pegs.
 
     Parameters
     ----------
@@ -262,13 +263,13 @@ def draw_bench(
         draw_plate(plates, carrier, view, 5.0 * weight)
     holes = scene.group("holes")
     for carrier in bench.shown.carriers:
-        draw_holes(holes, carrier, view, most_holes(view, bench.shown))
+        draw_holes(holes, carrier, view, limit_holes_drawn(view, bench.shown))
     for wall in bench.shown.walls:
         draw_wall(scene.group("wall"), wall.bar, view, weight, wall.standouts is not None)
     if axes and bench.shown.measured:
         group = scene.group("axes")
         for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):
-            group.line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
+            group.add_line([view(high), view(low)], GREY, 0.8 * weight, stroke_dasharray="12 3 2 3")
     for clamp in bench.shown.clamps:
         draw_clamp(scene, clamp, bench.shown.carriers[0], view, weight)
     if bench.shown.jaws is not None:
@@ -278,42 +279,46 @@ def draw_bench(
         draw_push(scene, clamp, view, weight)
     arrows = scene.group("forces")
     for index in range(len(bench.fixture.pegs)):
-        tail, tip = force_arrow(bench, index, view, longest)
+        tail, tip = compute_force_arrow(bench, index, view, longest)
         if hypot(tip[0] - tail[0], tip[1] - tail[1]) > 0:
-            arrows.arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
-            arrows.arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
+            arrows.add_arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
+            arrows.add_arrow(tail, tip, ARROW, 2.4 * weight, 12 * weight)
     draw_pegs(scene, bench, view, weight)
-    if min((bench.radius(view, index) for index in bench.placed), default=0.0) > 7.0 * weight:
+    if min((bench.get_page_radius(view, index) for index in bench.placed), default=0.0) > 7.0 * weight:
         contacts = scene.group("contacts")
         for contact, _ in bench.contacts:
-            contacts.circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
+            contacts.add_circle(view(contact), 2.8 * weight, ARROW, "#ffffff", 1.0 * weight)
 
 
 def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
-    """Draws the part, its touched faces underlaid; the holes of the jaws show faintly through it."""
+    """Draw the part, its touched faces underlaid; the holes of the jaws show faintly through it."""
     part = scene.group("part", view)
-    d = outline_path(bench.loops, view)
-    part.path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
-    for face in dict.fromkeys(bench.touched_piece(k) for k in bench.touching):
-        part.path(
-            segment_path(face, view), TOUCHED, 8.0 * weight, stroke_linecap="butt", **{"class": "touched"}
+    d = make_outline_path(bench.loops, view)
+    part.add_path(d, fill=PART_FILL, fill_rule="evenodd", fill_opacity="0.74")
+    for face in dict.fromkeys(bench.find_touched_piece(k) for k in bench.touching):
+        part.add_path(
+            make_segment_path(face, view),
+            TOUCHED,
+            8.0 * weight,
+            stroke_linecap="butt",
+            **{"class": "touched"},
         )
     if bench.fixture.hold is not None:
         draw_grip(part, bench.fixture.hold, view, weight)
     if bench.own and bench.fixture.hold is None:
         # What clamps and other carriers of their own heights meet, as a thin line beside what pegs meet.
-        part.path(outline_path(bench.own, view), BLACK, 0.8 * weight, **{"class": "own outline"})
-    part.path(d, BLACK, 2.2 * weight, **{"class": "outline"})
+        part.add_path(make_outline_path(bench.own, view), BLACK, 0.8 * weight, **{"class": "own outline"})
+    part.add_path(d, BLACK, 2.2 * weight, **{"class": "outline"})
 
 
 def draw_grip(scene: Scene, hold: JawHold, view: View, weight: float) -> None:
-    """Draws what flat jaws touch: stretches along them, and points."""
+    """Draw what flat jaws touch: stretches along them, and points."""
     for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
         for x0, x1, _, _ in patch.rectangles:
             if x1 > x0:
-                scene.line([view((x0, y)), view((x1, y))], TOUCHED, 8.0 * weight, **{"class": "touched"})
+                scene.add_line([view((x0, y)), view((x1, y))], TOUCHED, 8.0 * weight, **{"class": "touched"})
             else:
-                scene.circle(view((x0, y)), 6.0 * weight, TOUCHED)
+                scene.add_circle(view((x0, y)), 6.0 * weight, TOUCHED)
 
 
 def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
@@ -321,19 +326,25 @@ def draw_pegs(scene: Scene, bench: Bench, view: View, weight: float) -> None:
     holes = {carrier.carrier.name: view.scale * carrier.hole_radius for carrier in bench.shown.carriers}
     for index in bench.placed:
         peg = bench.fixture.pegs[index]
-        (x, y), radius, hole = view((peg.x, peg.y)), bench.radius(view, index), holes.get(peg.carrier, 0.0)
+        (x, y), radius, hole = (
+            view((peg.x, peg.y)),
+            bench.get_page_radius(view, index),
+            holes.get(peg.carrier, 0.0),
+        )
         cross = min(0.55 * radius, 6.0 * weight)
-        if bench.toolkit.carrier(peg.carrier).peg_radius == 0 and hole > radius:
-            pegs.circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
-        flat = bench.toolkit.carrier(peg.carrier).flat
+        if bench.toolkit.find_carrier(peg.carrier).peg_radius == 0 and hole > radius:
+            pegs.add_circle((x, y), hole, "none", PEG_FILL, 1.6 * weight, **{"class": "ring"})
+        flat = bench.toolkit.find_carrier(peg.carrier).flat
         if flat is None or peg.flat_deg is None:
-            pegs.circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
+            pegs.add_circle((x, y), radius, PEG_FILL, BLACK, 1.2 * weight, **{"class": "peg"})
         else:
-            outline = peg_outline((peg.x, peg.y), radius / view.scale, flat, peg.flat_deg)
-            pegs.path(outline_path([outline], view), BLACK, 1.2 * weight, PEG_FILL, **{"class": "peg"})
+            outline = make_peg_outline((peg.x, peg.y), radius / view.scale, flat, peg.flat_deg)
+            pegs.add_path(
+                make_outline_path([outline], view), BLACK, 1.2 * weight, PEG_FILL, **{"class": "peg"}
+            )
         if cross > 2.0 * weight:
-            pegs.line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
-            pegs.line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)
+            pegs.add_line([(x - cross, y), (x + cross, y)], "#ffffff", 1.0 * weight)
+            pegs.add_line([(x, y - cross), (x, y + cross)], "#ffffff", 1.0 * weight)
 
 
 # Flatter than this, in page units, there is no room for a picture.
@@ -350,7 +361,7 @@ def draw_inset(
     toolkit: Toolkit,
     zero: Point | None = None,
 ) -> None:
-    """Draws the unturned part with its touched faces and contacts into a page box.
+    """Draw the unturned part with its touched faces and contacts into a page box.
 
     Part zero, in the part's coordinates in mm, is marked where it lies within the part's extent; holes are
     numbered too then.
@@ -358,28 +369,28 @@ def draw_inset(
     if box.height < LOWEST:
         return
     group = scene.group("part-as-drawn")
-    group.text((box.x0, box.y0 + 8), "The part as drawn (θ = 0°)", 13, fill=GREY)
+    group.add_text((box.x0, box.y0 + 8), "The part as drawn (θ = 0°)", 13, fill=GREY)
     room = Box(box.x0 + 40, box.y0 + 30, box.x1 - 10, box.y1 - 24)
     bounds = Box(*workpiece.bounds)
-    view = View.fitting(bounds, room)
-    d = outline_path(workpiece.loop_segments, view)
-    group.path(d, fill=PART_FILL, fill_rule="evenodd")
+    view = View.fit_box(bounds, room)
+    d = make_outline_path(workpiece.loop_segments, view)
+    group.add_path(d, fill=PART_FILL, fill_rule="evenodd")
     hold = fixture.hold
     gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
     for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
-        group.path(segment_path(face_of(workpiece, face), view), TOUCHED, 5.0)
-    group.path(d, BLACK, 1.4)
-    for point in contacts(workpiece, fixture, toolkit):
-        group.circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
+        group.add_path(make_segment_path(find_face(workpiece, face), view), TOUCHED, 5.0)
+    group.add_path(d, BLACK, 1.4)
+    for point in find_contacts(workpiece, fixture, toolkit):
+        group.add_circle(view(point), 3.0, ARROW, "#ffffff", 1.0)
     if zero is not None:
         number_holes(group, view, workpiece)
         if bounds.grown(AGREEMENT).contains(Box(*zero, *zero)):
             draw_zero(group, view(zero))
     corner = (box.x0 + 4, box.y1 - 4)
-    group.arrow(corner, (corner[0] + 30, corner[1]), GREY, 1.2, 8)
-    group.arrow(corner, (corner[0], corner[1] - 30), GREY, 1.2, 8)
-    group.text((corner[0] + 34, corner[1] - 1), "x", 12, fill=GREY)
-    group.text((corner[0] + 5, corner[1] - 33), "y", 12, fill=GREY)
+    group.add_arrow(corner, (corner[0] + 30, corner[1]), GREY, 1.2, 8)
+    group.add_arrow(corner, (corner[0], corner[1] - 30), GREY, 1.2, 8)
+    group.add_text((corner[0] + 34, corner[1] - 1), "x", 12, fill=GREY)
+    group.add_text((corner[0] + 5, corner[1] - 33), "y", 12, fill=GREY)
 
 
 def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
@@ -388,25 +399,27 @@ def number_holes(scene: Scene, view: View, workpiece: Workpiece) -> None:
     ):
         extent = reduce(Box.union, (Box(*bounding_box(segment)) for segment in loop))
         if min(extent.width, extent.height) * view.scale >= NUMBER + 2:
-            scene.text(view(center), str(count), NUMBER, "middle", fill=GREY)
+            scene.add_text(view(center), str(count), NUMBER, "middle", fill=GREY)
 
 
 def draw_zero(scene: Scene, at: Point, radius: float = 5.0) -> None:
-    """Draws the sign of a zero point, a disc with two black quarters."""
+    """Draw the sign of a zero point, a disc with two black quarters."""
     x, y = at
     r = number(radius)
-    scene.circle(at, radius, "#ffffff", BLACK, 1.0)
+    scene.add_circle(at, radius, "#ffffff", BLACK, 1.0)
     for way in (1, -1):
         start, end = f"{number(x + way * radius)} {number(y)}", f"{number(x)} {number(y - way * radius)}"
-        scene.path(f"M{number(x)} {number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
+        scene.add_path(f"M{number(x)} {number(y)}L{start}A{r} {r} 0 0 0 {end}Z", fill=BLACK)
 
 
-def contacts(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> list[Point]:
-    """The contact points in the workpiece's own frame, mm."""
+def find_contacts(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> list[Point]:
+    """Return the contact points in the workpiece's own frame, mm."""
     back = fixture.pose.inverse
     return [
-        contact_of(
-            toolkit.carrier(peg.carrier).contact, back.apply(peg.x, peg.y), face_of(workpiece, peg.face)
+        find_contact(
+            toolkit.find_carrier(peg.carrier).contact,
+            back.apply(peg.x, peg.y),
+            find_face(workpiece, peg.face),
         )[0]
         for peg in fixture.pegs
     ]

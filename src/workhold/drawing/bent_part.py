@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from workhold.bending.figures import Bending
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit, Scene, text_width
+from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit, Scene, measure_text
 
 __all__ = ["LARGEST_SHOWN", "colours_of", "draw_bent_part", "exaggeration_of", "picture_of_bending"]
 
@@ -102,7 +102,7 @@ def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit
     for number in np.flatnonzero(is_seen)[np.argsort(depth[is_seen])].tolist():
         fill = as_hex(colours[number] * light[number])
         points = [(float(x[node]), float(y[node])) for node in shown[number, :3]]
-        group.polygon(points, fill, fill, 0.4)
+        group.add_polygon(points, fill, fill, 0.4)
     mark = np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin()
     draw_mark(scene, (float(x[mark]), float(y[mark])))
     draw_scale(scene, Box(box.x0, box.y1 - scale_height + 8, box.x1, box.y1), bending, lengths, times)
@@ -110,8 +110,8 @@ def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit
 
 def draw_mark(scene: Scene, at: tuple[float, float]) -> None:
     """A ring around the largest movement."""
-    scene.circle(at, 6.0, stroke="#ffffff", width=3.5)
-    scene.circle(at, 6.0, stroke="#d50000", width=1.8)
+    scene.add_circle(at, 6.0, stroke="#ffffff", width=3.5)
+    scene.add_circle(at, 6.0, stroke="#d50000", width=1.8)
 
 
 def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, times: float) -> None:
@@ -119,7 +119,7 @@ def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, ti
     width, pieces = min(200.0, 0.45 * box.width), 50
     for k in range(pieces):
         fill = as_hex(colours_at(np.array([(k + 0.5) / pieces]))[0])
-        scene.rectangle(
+        scene.add_rectangle(
             Box(box.x0 + k * width / pieces, box.y0, box.x0 + (k + 1) * width / pieces + 0.3, box.y0 + 8),
             fill,
         )
@@ -127,23 +127,23 @@ def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, ti
     unit = lengths.unit
     for k in range(STEPS):
         share = k / (STEPS - 1)
-        words = unit.small_number(share * most) + (f" {unit.small_name}" if k == STEPS - 1 else "")
-        left = box.x0 + share * width - (0.0 if k == 0 else text_width(words, 9) / 2)
-        scene.text((left, box.y0 + 19), words, 9)
+        words = unit.format_small_number(share * most) + (f" {unit.small_name}" if k == STEPS - 1 else "")
+        left = box.x0 + share * width - (0.0 if k == 0 else measure_text(words, 9) / 2)
+        scene.add_text((left, box.y0 + 19), words, 9)
     said = f"Bent {times:,.0f} times as far as it is." if times > 1 else "Bent as far as it is."
-    scene.text((box.x0 + width + 40, box.y0 + 8), said, 10, bold=True)
-    scene.text((box.x0 + width + 40, box.y0 + 20), "Ring: most. Grey: pressed, not counted.", 9)
+    scene.add_text((box.x0 + width + 40, box.y0 + 8), said, 10, bold=True)
+    scene.add_text((box.x0 + width + 40, box.y0 + 20), "Ring: most. Grey: pressed, not counted.", 9)
 
 
 def picture_of_bending(bending: Bending, title: str, lengths: LengthUnit, words: Sequence[str]) -> str:
     """A picture by itself, as SVG text, with sentences below it."""
     width, height = (UNITS_PER_MM * side for side in PICTURE)
-    scene = Scene.page((width, height), title)
+    scene = Scene.make_page((width, height), title)
     margin = 20.0
-    scene.text((margin, margin + 8), title, 13, bold=True)
+    scene.add_text((margin, margin + 8), title, 13, bold=True)
     below = height - 62.0
     draw_bent_part(scene, Box(margin, margin + 20, width - margin, below - 6), bending, lengths)
     column = TextColumn(scene.group("words"), margin, below + 4, width - 2 * margin)
     for sentence in words:
-        column.paragraph(sentence, 10)
-    return scene.svg()
+        column.write_paragraph(sentence, 10)
+    return scene.to_svg()

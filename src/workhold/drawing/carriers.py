@@ -19,7 +19,7 @@ from workhold.model.shown import Shown, ShownCarrier, ShownJaws, Side
 __all__ = [
     "SLIDING",
     "avoid_clamp",
-    "block_arrow",
+    "draw_block_arrow",
     "draw_clamp",
     "draw_flat_jaws",
     "draw_holes",
@@ -28,8 +28,8 @@ __all__ = [
     "draw_push",
     "draw_sign",
     "draw_wall",
-    "labelled",
-    "most_holes",
+    "choose_labelled",
+    "limit_holes_drawn",
 ]
 
 # Fill and edge of a plate that stands still, and of one that slides.
@@ -40,34 +40,34 @@ STILL, SLIDING = ("#dbe4ee", "#7c8da1"), ("#f1e7d6", "#a8946f")
 CLOSEST_HOLES = 5.0
 
 
-def most_holes(view: View, shown: Shown) -> float:
-    """The number of holes above which only those near the pegs are drawn; 0 for a lattice too fine for the
-    page.
+def limit_holes_drawn(view: View, shown: Shown) -> float:
+    """Return the number of holes above which only those near the pegs are drawn; 0 for a lattice too fine for
+    the page.
     """
     return 0 if shown.pitch * view.scale < CLOSEST_HOLES else inf
 
 
 def draw_plate(scene: Scene, shown: ShownCarrier, view: View, tooth: float = 5.0) -> None:
-    """Draws a plate; broken sides are zigzags with teeth of ``tooth`` page units."""
-    box = view.box(shown.plate)
+    """Draw a plate; broken sides are zigzags with teeth of ``tooth`` page units."""
+    box = view.map_box(shown.plate)
     corners = [(box.x0, box.y1), (box.x1, box.y1), (box.x1, box.y0), (box.x0, box.y0)]
     sides: list[Side] = ["bottom", "right", "top", "left"]
     runs = [
-        zigzag(corners[k], corners[(k + 1) % 4], tooth)
+        make_zigzag(corners[k], corners[(k + 1) % 4], tooth)
         if side in shown.broken
         else [corners[k], corners[(k + 1) % 4]]
         for k, side in enumerate(sides)
     ]
     fill, edge = STILL if shown.clamping is None else SLIDING
-    scene.polygon([point for run in runs for point in run[:-1]], fill)
+    scene.add_polygon([point for run in runs for point in run[:-1]], fill)
     for side, run in zip(sides, runs, strict=True):
-        scene.line(run, edge, 0.8 if side in shown.broken else 2.0, stroke_linecap="round")
+        scene.add_line(run, edge, 0.8 if side in shown.broken else 2.0, stroke_linecap="round")
 
 
 def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0, has_ends: bool = False) -> None:
-    """Draws a wall, a bar in mm: hatched below the line that the part lies on, and any ends of it."""
-    box = view.box(bar)
-    scene.rectangle(box, FENCE[0])
+    """Draw a wall, a bar in mm: hatched below the line that the part lies on, and any ends of it."""
+    box = view.map_box(bar)
+    scene.add_rectangle(box, FENCE[0])
     high, step = box.height, max(box.height * 0.8, 6.0 * weight)
     for k in range(1, int((box.width + high) / step) + 1):
         # Strokes at 45 degrees, cut off at the bar's ends.
@@ -75,39 +75,39 @@ def draw_wall(scene: Scene, bar: Box, view: View, weight: float = 1.0, has_ends:
         low, top = max(foot, box.x0), min(foot + high, box.x1)
         if low < top:
             ends = [(low, box.y1 - (low - foot)), (top, box.y1 - (top - foot))]
-            scene.line(ends, FENCE[1], 0.9 * weight, **{"class": "hatching"})
-    scene.line([(box.x0, box.y0), (box.x1, box.y0)], FENCE[1], 2.6 * weight, **{"class": "fence"})
+            scene.add_line(ends, FENCE[1], 0.9 * weight, **{"class": "hatching"})
+    scene.add_line([(box.x0, box.y0), (box.x1, box.y0)], FENCE[1], 2.6 * weight, **{"class": "fence"})
     for x in (box.x0, box.x1) if has_ends else ():
-        scene.line([(x, box.y0), (x, box.y1)], FENCE[1], 2.6 * weight, **{"class": "end of fence"})
+        scene.add_line([(x, box.y0), (x, box.y1)], FENCE[1], 2.6 * weight, **{"class": "end of fence"})
 
 
 def draw_flat_jaws(scene: Scene, jaws: ShownJaws, view: View, weight: float = 1.0) -> None:
-    """Draws two flat jaws from above, the parallels between them and the work stop."""
+    """Draw two flat jaws from above, the parallels between them and the work stop."""
     for box in jaws.parallels:
-        page = view.box(box)
-        scene.rectangle(page, "#eef0f3")
+        page = view.map_box(box)
+        scene.add_rectangle(page, "#eef0f3")
         corners = [(page.x0, page.y0), (page.x1, page.y0), (page.x1, page.y1), (page.x0, page.y1)]
-        scene.line([*corners, corners[0]], "#9aa1aa", 0.9 * weight, stroke_dasharray="6 4")
+        scene.add_line([*corners, corners[0]], "#9aa1aa", 0.9 * weight, stroke_dasharray="6 4")
     for bar, is_lower in ((jaws.fixed, True), (jaws.moving, False)):
-        draw_jaw(scene, view.box(bar), "top" if is_lower else "bottom", weight)
+        draw_jaw(scene, view.map_box(bar), "top" if is_lower else "bottom", weight)
     if jaws.stop is not None:
-        scene.rectangle(view.box(jaws.stop), "#cfd4db", BLACK, 1.2 * weight)
+        scene.add_rectangle(view.map_box(jaws.stop), "#cfd4db", BLACK, 1.2 * weight)
 
 
 def draw_jaw(scene: Scene, box: Box, face: str, weight: float = 1.0) -> None:
-    """Draws a jaw in page units, its face at the top, the bottom, the left or the right of it drawn bold."""
-    scene.rectangle(box, "#dfe3e8", GREY, 1.0 * weight)
+    """Draw a jaw in page units, its face at the top, the bottom, the left or the right of it drawn bold."""
+    scene.add_rectangle(box, "#dfe3e8", GREY, 1.0 * weight)
     ends = {
         "top": [(box.x0, box.y0), (box.x1, box.y0)],
         "bottom": [(box.x0, box.y1), (box.x1, box.y1)],
         "left": [(box.x0, box.y0), (box.x0, box.y1)],
         "right": [(box.x1, box.y0), (box.x1, box.y1)],
     }
-    scene.line(ends[face], FENCE[1], 2.6 * weight, **{"class": "jaw face"})
+    scene.add_line(ends[face], FENCE[1], 2.6 * weight, **{"class": "jaw face"})
 
 
-def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
-    """A break line between two page points along an axis."""
+def make_zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
+    """Return a break line between two page points along an axis."""
     dx, dy = end[0] - start[0], end[1] - start[1]
     length = abs(dx) + abs(dy)
     count = max(2, round(length / (2 * tooth)))
@@ -120,16 +120,16 @@ def zigzag(start: Point, end: Point, tooth: float) -> list[Point]:
 
 
 def draw_holes(scene: Scene, shown: ShownCarrier, view: View, most: float) -> None:
-    """Draws the holes that show; of more than ``most`` those near the pegs."""
+    """Draw the holes that show; of more than ``most`` those near the pegs."""
     radius = max(view.scale * shown.hole_radius, 0.4)
     for hole in shown.holes(most):
-        scene.circle(view(hole.center), radius, "#ffffff", GREY, min(0.9, 0.3 * radius + 0.1))
+        scene.add_circle(view(hole.center), radius, "#ffffff", GREY, min(0.9, 0.3 * radius + 0.1))
 
 
-def labelled(
+def choose_labelled(
     names: Sequence[tuple[int, float]], pegs: set[int], spacing: float
 ) -> list[tuple[int, float, bool]]:
-    """The columns or rows to label so that labels stand at least ``spacing`` page units apart.
+    """Return the columns or rows to label so that labels stand at least ``spacing`` page units apart.
 
     Those of the pegs come first (their flag is True), then as many of the rest as there is room for, evenly.
 
@@ -162,67 +162,69 @@ SHARE, OFF = 0.95, 2.0
 THINNEST = 7.0
 
 
-def block_arrow(
+def draw_block_arrow(
     scene: Scene, middle: Point, direction: Point, size: float = 1.0, weight: float = 1.0
 ) -> None:
-    """Draws an outlined arrow about a page point in a direction of the plan, whose y runs up."""
+    """Draw an outlined arrow about a page point in a direction of the plan, whose y runs up."""
     turn = atan2(direction[1], -direction[0])
     corners = [rotate_vectors(size * x, size * y, turn) for x, y in ARROW]
-    scene.polygon([(middle[0] + dx, middle[1] + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4 * weight)
+    scene.add_polygon(
+        [(middle[0] + dx, middle[1] + dy) for dx, dy in corners], "#ffffff", BLACK, 1.4 * weight
+    )
 
 
 def clamp_arrow(clamp: ShownClamp, view: View, weight: float = 1.0) -> tuple[Point, float]:
-    """Middle of the arrow behind a clamp on the page, and its size beside that of a plate that slides."""
+    """Return the middle of the arrow behind a clamp on the page, and its size beside that of a plate that slides."""
     start = max(clamp.carrier.peg_radius * view.scale, THINNEST * weight / 2) + OFF * weight
     length = min(LENGTH * weight, max(SHARE * clamp.pitch * view.scale - start, 0.3 * LENGTH * weight))
     return view(clamp.behind((start + length / 2) / view.scale)), length / LENGTH
 
 
 def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
-    """Marks where a clamp is drawn, so that labels keep off."""
+    """Mark where a clamp is drawn, so that labels keep off."""
     (x, y), size = clamp_arrow(clamp, view)
     along, across = size * LENGTH / 2, size * WIDTH / 2
     half_x, half_y = (across, along) if clamp.is_upright else (along, across)
     placer.avoid_box(Box(x - half_x, y - half_y, x + half_x, y + half_y))
-    placer.avoid_box(view.box(clamp.extent))
+    placer.avoid_box(view.map_box(clamp.extent))
 
 
 def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View, weight: float) -> None:
-    """Draws a clamp: its body with the bolt, or the line of holes of its tip where the hole is not known."""
+    """Draw a clamp: its body with the bolt, or the line of holes of its tip where the hole is not known."""
     group = scene.group("clamp")
     tip = view((clamp.tip.x, clamp.tip.y))
     if clamp.hole is None:
-        box = view.box(plate.plate)
+        box = view.map_box(plate.plate)
         ends = (
             [(tip[0], box.y1), (tip[0], box.y0)] if clamp.is_upright else [(box.x0, tip[1]), (box.x1, tip[1])]
         )
-        group.line(ends, BLACK, 1.0 * weight, stroke_dasharray="7 4", **{"class": "clamp-line"})
+        group.add_line(ends, BLACK, 1.0 * weight, stroke_dasharray="7 4", **{"class": "clamp-line"})
     else:
         hole, width = view(clamp.hole), max(2 * clamp.carrier.peg_radius * view.scale, THINNEST * weight)
         fill, edge = SLIDING
-        group.line([hole, tip], edge, width, stroke_linecap="round", **{"class": "clamp-body"})
-        group.line([hole, tip], fill, max(width - 3.0 * weight, 0.6 * width), stroke_linecap="round")
+        group.add_line([hole, tip], edge, width, stroke_linecap="round", **{"class": "clamp-body"})
+        group.add_line([hole, tip], fill, max(width - 3.0 * weight, 0.6 * width), stroke_linecap="round")
         draw_bolt(group, hole, min(view.scale * plate.hole_radius, 0.8 * width / 2), weight)
 
 
 def draw_push(scene: Scene, clamp: ShownClamp, view: View, weight: float) -> None:
-    """Draws the arrow of a clamp's push behind it; over the part, as it may stand in a hole of the part."""
+    """Draw the arrow of a clamp's push behind it; over the part, as it may stand in a hole of the part."""
     middle, size = clamp_arrow(clamp, view, weight)
-    block_arrow(scene.group("clamp-push"), middle, clamp.clamping, size, weight)
+    draw_block_arrow(scene.group("clamp-push"), middle, clamp.clamping, size, weight)
 
 
 def draw_bolt(scene: Scene, at: Point, radius: float, weight: float = 1.0) -> None:
-    scene.circle(at, radius, BOLT, BLACK, 1.1 * weight, **{"class": "bolt"})
+    scene.add_circle(at, radius, BOLT, BLACK, 1.1 * weight, **{"class": "bolt"})
     corners = [
         (at[0] + 0.55 * radius * cos(k * pi / 3), at[1] + 0.55 * radius * sin(k * pi / 3)) for k in range(6)
     ]
-    scene.polygon(corners, "#ffffff", GREY, 0.8 * weight)
+    scene.add_polygon(corners, "#ffffff", GREY, 0.8 * weight)
 
 
 def draw_sign(scene: Scene, at: Point) -> None:
-    """Draws the sign of a clamp for a legend about a page point."""
+    """Draw the sign of a clamp for a legend about a page point."""
     fill, edge = SLIDING
     ends = [(at[0] + 9, at[1]), (at[0] - 9, at[1])]
-    scene.line(ends, edge, 14, stroke_linecap="round")
-    scene.line(ends, fill, 11, stroke_linecap="round")
+    scene.add_line(ends, edge, 14, stroke_linecap="round")
+    scene.add_line(ends, fill, 11, stroke_linecap="round")
     draw_bolt(scene, ends[0], 4.5)

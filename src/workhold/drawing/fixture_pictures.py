@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, bench_of, draw_bench, draw_inset
-from workhold.drawing.carriers import most_holes
+from workhold.drawing.bench import Bench, draw_bench, draw_inset, make_bench
+from workhold.drawing.carriers import limit_holes_drawn
 from workhold.drawing.hold_blocks import draw_hold_panel
 from workhold.drawing.panel import (
     TextColumn,
-    closure_margin,
     draw_legend,
     draw_peg_table,
     draw_settings,
     draw_title,
-    plural,
+    format_closure_margin,
+    format_count,
 )
 from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
@@ -28,8 +28,8 @@ from workhold.drawing.scene import (
     LengthUnit,
     Scene,
     View,
-    shortened,
-    text_width,
+    measure_text,
+    shorten_text,
 )
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
@@ -41,8 +41,8 @@ from workhold.units import MILLIMETRE, Unit
 
 __all__ = [
     "MOST_THUMBNAILS",
-    "best_at_a_glance",
-    "cells_of",
+    "draw_best_thumbnails",
+    "arrange_cells",
     "draw_fixture",
     "draw_heading",
     "draw_thumbnail",
@@ -55,11 +55,11 @@ SCALE_BAR = 36.0
 HIGHEST_INSET = 320.0
 
 
-def drawing_on(page: tuple[float, float], extent: Box) -> tuple[Box, View]:
-    """The box beside the panel of a page, and the largest view of an extent (mm) with its lettering in it."""
+def place_drawing_on_page(page: tuple[float, float], extent: Box) -> tuple[Box, View]:
+    """Return the box beside the panel of a page, and the largest view of an extent (mm) with its lettering in it."""
     box = Box(EDGE, EDGE, page[0] - EDGE - PANEL - GUTTER, page[1] - EDGE)
     inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
-    return box, View.fitting(extent, inner)
+    return box, View.fit_box(extent, inner)
 
 
 def draw_fixture(
@@ -71,7 +71,7 @@ def draw_fixture(
     unit: Unit = MILLIMETRE,
     path: PlannedPath | None = None,
 ) -> str:
-    """Draws a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
+    """Draw a fixture on an A4 sheet, landscape, or portrait when that shows it much larger.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
     attribute ``data-model-to-page``, written as an SVG matrix.
@@ -86,19 +86,19 @@ def draw_fixture(
     str
         SVG text.
     """
-    bench = bench_of(fixture, workpiece, toolkit)
-    extent = bench.extent if path is None else path.grown(bench.extent)
-    lengths = LengthUnit.suiting(unit, bench.shown.pitch)
-    page, (drawing, view) = LANDSCAPE, drawing_on(LANDSCAPE, extent)
-    upright, upright_view = drawing_on(PORTRAIT, extent)
+    bench = make_bench(fixture, workpiece, toolkit)
+    extent = bench.extent if path is None else path.enlarge_extent(bench.extent)
+    lengths = LengthUnit.from_typical_length(unit, bench.shown.pitch)
+    page, (drawing, view) = LANDSCAPE, place_drawing_on_page(LANDSCAPE, extent)
+    upright, upright_view = place_drawing_on_page(PORTRAIT, extent)
     if upright_view.scale > 1.15 * view.scale:
         page, drawing, view = PORTRAIT, upright, upright_view
-    scene = Scene.page(page, f"{workpiece.name}: {title or 'Fixture'}")
+    scene = Scene.make_page(page, f"{workpiece.name}: {title or 'Fixture'}")
     draw_plan(scene, bench, view, workpiece, drawing, lengths, path=path)
     scale_bar(scene, (drawing.x0, drawing.y1), view.scale, lengths)
     panel = Box(drawing.x1 + GUTTER, drawing.y0, page[0] - EDGE, drawing.y1)
     draw_panel(scene, panel, bench, view, workpiece, title, lengths, path)
-    return scene.svg()
+    return scene.to_svg()
 
 
 def draw_panel(
@@ -111,9 +111,9 @@ def draw_panel(
     lengths: LengthUnit,
     path: PlannedPath | None,
 ) -> None:
-    """Writes the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
+    """Write the panel, with the part as drawn at its foot; ``view`` is that of the drawing beside it."""
     group, fixture = scene.group("panel"), bench.fixture
-    group.line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
+    group.add_line([(panel.x0 - 12, panel.y0), (panel.x0 - 12, panel.y1)], GREY, 0.8)
     column = TextColumn(group, panel.x0, panel.y0, panel.width)
     draw_title(column, fixture, workpiece, bench.toolkit, title)
     if fixture.hold is not None:
@@ -125,11 +125,11 @@ def draw_panel(
     draw_peg_table(column, fixture, bench.toolkit, lengths)
     if path is not None:
         write_path(column, path, lengths, GREY)
-        column.rule()
+        column.draw_rule()
     draw_legend(column, bench.toolkit)
-    if not most_holes(view, bench.shown):
-        column.words("Only the holes near the pegs are drawn.", 11.5, fill=GREY)
-    column.rule()
+    if not limit_holes_drawn(view, bench.shown):
+        column.write_line("Only the holes near the pegs are drawn.", 11.5, fill=GREY)
+    column.draw_rule()
     room = Box(panel.x0, column.y, panel.x1, min(panel.y1, column.y + HIGHEST_INSET))
     draw_inset(group, room, workpiece, fixture, bench.toolkit)
 
@@ -144,18 +144,18 @@ ALONE, RIM = (320.0, 240.0), 6.0
 
 
 def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
-    """Draws one fixture as a small picture without any words, to stand beside a text.
+    """Draw one fixture as a small picture without any words, to stand beside a text.
 
     Returns
     -------
     str
         SVG text.
     """
-    bench = bench_of(fixture, workpiece, toolkit)
-    scene = Scene.page(ALONE, workpiece.name)
-    view = View.fitting(bench.extent, Box(0.0, 0.0, *ALONE).grown(-RIM))
+    bench = make_bench(fixture, workpiece, toolkit)
+    scene = Scene.make_page(ALONE, workpiece.name)
+    view = View.fit_box(bench.extent, Box(0.0, 0.0, *ALONE).grown(-RIM))
     draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
-    return scene.svg()
+    return scene.to_svg()
 
 
 def draw_thumbnails(
@@ -166,7 +166,7 @@ def draw_thumbnails(
     *,
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draws up to twelve fixtures on an A4 sheet to one scale, with type, closure margin and opening.
+    """Draw up to twelve fixtures on an A4 sheet to one scale, with type, closure margin and opening.
 
     Each has a title, such as its rank. Returns SVG text. Refuses no fixture, more than twelve, or another
     number of titles.
@@ -178,37 +178,37 @@ def draw_thumbnails(
         )
     if len(titles) != count:
         raise InputError(f"{count} fixtures have {len(titles)} titles: give one title for each.")
-    benches = [bench_of(fixture, workpiece, toolkit) for fixture in fixtures]
-    lengths = LengthUnit.suiting(unit, benches[0].shown.pitch)
-    scene = Scene.page(LANDSCAPE, f"{workpiece.name}: fixtures")
-    draw_heading(scene, workpiece.name, f"{plural(count, 'fixture')}, all to the same scale")
-    cells = cells_of([bench.extent for bench in benches])
+    benches = [make_bench(fixture, workpiece, toolkit) for fixture in fixtures]
+    lengths = LengthUnit.from_typical_length(unit, benches[0].shown.pitch)
+    scene = Scene.make_page(LANDSCAPE, f"{workpiece.name}: fixtures")
+    draw_heading(scene, workpiece.name, f"{format_count(count, 'fixture')}, all to the same scale")
+    cells = arrange_cells([bench.extent for bench in benches])
     for bench, title, (cell, view) in zip(benches, titles, cells, strict=True):
         draw_cell(scene, bench, title, cell, view, lengths)
     scale_bar(scene, (EDGE, LANDSCAPE[1] - EDGE + 8), cells[0][1].scale, lengths)
-    return scene.svg()
+    return scene.to_svg()
 
 
 def draw_heading(scene: Scene, name: str, words: str) -> None:
-    """Writes what a page of small pictures is of at its upper left, and words at the right."""
+    """Write what a page of small pictures is of at its upper left, and words at the right."""
     width = LANDSCAPE[0]
-    name = shortened(name, 24, width - 2 * EDGE - text_width(words, 14) - 20, bold=True)
-    scene.text((EDGE, EDGE + 10), name, 24, bold=True)
-    scene.text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
+    name = shorten_text(name, 24, width - 2 * EDGE - measure_text(words, 14) - 20, bold=True)
+    scene.add_text((EDGE, EDGE + 10), name, 24, bold=True)
+    scene.add_text((width - EDGE, EDGE + 10), words, 14, "end", fill=GREY)
 
 
-def cells_of(extents: Sequence[Box]) -> list[tuple[Box, View]]:
-    """A cell for each of some extents (mm), and the view of it there above a caption, all to one scale."""
-    cells = grid(len(extents))
+def arrange_cells(extents: Sequence[Box]) -> list[tuple[Box, View]]:
+    """Return a cell for each of some extents (mm), and the view of it there above a caption, all to one scale."""
+    cells = make_grid(len(extents))
     rooms = [Box(cell.x0 + 8, cell.y0 + 8, cell.x1 - 8, cell.y1 - CAPTION) for cell in cells]
-    scale = min(View.fitting(extent, room).scale for extent, room in zip(extents, rooms, strict=True))
-    views = [View.fitting(extent, room, scale) for extent, room in zip(extents, rooms, strict=True)]
+    scale = min(View.fit_box(extent, room).scale for extent, room in zip(extents, rooms, strict=True))
+    views = [View.fit_box(extent, room, scale) for extent, room in zip(extents, rooms, strict=True)]
     return list(zip(cells, views, strict=True))
 
 
-def best_at_a_glance(result: Result, shown: Entries, unit: Unit = MILLIMETRE) -> str:
-    """Thumbnails of the first twelve entries of a result as SVG text, with ranks and numbers of near
-    duplicates.
+def draw_best_thumbnails(result: Result, shown: Entries, unit: Unit = MILLIMETRE) -> str:
+    """Return the thumbnails of the first twelve entries of a result as SVG text, with ranks and numbers of
+    near duplicates.
 
     Raises
     ------
@@ -224,8 +224,8 @@ def best_at_a_glance(result: Result, shown: Entries, unit: Unit = MILLIMETRE) ->
     return draw_thumbnails(fixtures, result.workpiece, result.toolkit, titles, unit=unit)
 
 
-def grid(count: int) -> list[Box]:
-    """Equal cells for a number of thumbnails, row by row: at most four across and three down."""
+def make_grid(count: int) -> list[Box]:
+    """Return the equal cells for a number of thumbnails, row by row: at most four across and three down."""
     across = next(columns for columns, most in ((1, 1), (2, 4), (3, 6), (4, 12)) if count <= most)
     down = -(-count // across)
     width = (LANDSCAPE[0] - 2 * EDGE - (across - 1) * GAP) / across
@@ -237,30 +237,32 @@ def grid(count: int) -> list[Box]:
     return cells
 
 
-def cell_words(fixture: Fixture, lengths: LengthUnit) -> str:
-    """What the small picture of a part between flat jaws says of it: the force it asks for, or its grip."""
+def caption_hold(fixture: Fixture, lengths: LengthUnit) -> str:
+    """Return what the small picture of a part between flat jaws says of it: the force it asks for, or its grip."""
     hold = fixture.hold
     assert hold is not None
     if hold.clamp_needed is not None:
-        return f"needs {lengths.unit.force_words(hold.clamp_needed)}"
-    return f"grip {lengths.short(hold.grip, 4)}"
+        return f"needs {lengths.unit.format_force(hold.clamp_needed)}"
+    return f"grip {lengths.format_short(hold.grip, 4)}"
 
 
 def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, lengths: LengthUnit) -> None:
     group = scene.group("thumbnail")
-    group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
+    group.add_rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)
     fixture, width = bench.fixture, cell.width - 20
-    kind = bench.toolkit.arrangement(fixture.type, fixture.direction).short_title
+    kind = bench.toolkit.find_arrangement(fixture.type, fixture.direction).short_title
     if fixture.hold is not None:
-        kind = f"on {lengths.short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
-    name = shortened(title, 15, width - text_width(kind, 13, bold=True) - 10, bold=True)
-    group.text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
-    group.text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
-    figure = cell_words(fixture, lengths) if fixture.hold else f"margin {closure_margin(fixture)}"
-    group.text((cell.x0 + 10, cell.y1 - 12), figure, 12, fill=GREY)
+        kind = (
+            f"on {lengths.format_short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
+        )
+    name = shorten_text(title, 15, width - measure_text(kind, 13, bold=True) - 10, bold=True)
+    group.add_text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
+    group.add_text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)
+    figure = caption_hold(fixture, lengths) if fixture.hold else f"margin {format_closure_margin(fixture)}"
+    group.add_text((cell.x0 + 10, cell.y1 - 12), figure, 12, fill=GREY)
     if bench.shown.measured:
         settings = [measured.setting for measured in bench.shown.measured]
         signs = " and ".join(dict.fromkeys(setting.sign for setting in settings))
-        words = f"{signs} = {', '.join(lengths.words(setting.length) for setting in settings)}"
-        group.text((cell.x1 - 10, cell.y1 - 12), words, 12, "end", fill=GREY)
+        words = f"{signs} = {', '.join(lengths.format_length(setting.length) for setting in settings)}"
+        group.add_text((cell.x1 - 10, cell.y1 - 12), words, 12, "end", fill=GREY)

@@ -7,20 +7,20 @@ from collections import Counter
 from attrs import frozen
 
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, heading, usual_dowel
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, SheetHeights, find_usual_dowel, write_heading
 from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowel_lengths import find_shortest_dowel
 from workhold.model.fixture import Fixture
 
-__all__ = ["HardwareItem", "hardware_of", "write_hardware"]
+__all__ = ["HardwareItem", "list_hardware", "write_hardware"]
 
 OF_TIP = "diameter of the tip"
 # Pegs that could be shorter by less than this, in mm, are left as they are.
 SHORTER = 2.0
 
 
-def hardware_items(sheet: Sheet) -> list[HardwareItem]:
+def list_sheet_hardware(sheet: Sheet) -> list[HardwareItem]:
     chosen, heights, details = sheet.details.supports, sheet.heights, sheet.details
     length = details.peg_length if heights is None else heights.peg_length
     # Where the pegs' height was assumed, so would be the length, of which nothing then is known.
@@ -31,63 +31,66 @@ def hardware_items(sheet: Sheet) -> list[HardwareItem]:
         assert heights is not None
         pads = (2 * chosen.supports.request.pad_radius, heights.supported_by)
         top_tip = 2 * chosen.supports.request.tip_radius
-    return hardware_of(sheet.fixture, sheet.toolkit, length, pads, top_tip)
+    return list_hardware(sheet.fixture, sheet.toolkit, length, pads, top_tip)
 
 
 def write_hardware(column: TextColumn, sheet: Sheet) -> None:
-    """Writes what to take from the drawer as a table, and how the lengths come about."""
-    lengths, heights, details, items = sheet.lengths, sheet.heights, sheet.details, hardware_items(sheet)
-    heading(column, "To take from the drawer")
+    """Write what to take from the drawer as a table, and how the lengths come about."""
+    lengths, heights, details, items = sheet.lengths, sheet.heights, sheet.details, list_sheet_hardware(sheet)
+    write_heading(column, "To take from the drawer")
     rows = [
         [
             f"{item.count} {item.name}",
-            "–" if item.diameter is None else lengths.short_number(item.diameter),
-            length_words(item, sheet),
+            "–" if item.diameter is None else lengths.format_short_number(item.diameter),
+            describe_length(item, sheet),
         ]
         for item in items
     ]
-    column.table(["", f"Ø {lengths.sign}", f"length {lengths.sign}"], rows, BODY)
+    column.write_table(["", f"Ø {lengths.sign}", f"length {lengths.sign}"], rows, BODY)
     if any(item.note == OF_TIP for item in items):
-        column.paragraph("The Ø of a clamp is that of its tip.", NOTE)
+        column.write_paragraph("The Ø of a clamp is that of its tip.", NOTE)
     plate = sheet.toolkit.plates[0]
     if sheet.dowel:
-        column.paragraph(f"{plate.peg.capitalize()}s: {sheet.dowel}.", NOTE)
+        column.write_paragraph(f"{plate.peg.capitalize()}s: {sheet.dowel}.", NOTE)
     if heights is None or details.peg_length is not None or "peg_top" in heights.assumed:
         return
-    out = [f"{lengths.words(heights.peg_top)} beside the part"]
+    out = [f"{lengths.format_length(heights.peg_top)} beside the part"]
     if heights.supported_by:
-        out.append(f"{lengths.words(heights.supported_by)} of supports{heights.sure('supported_by')}")
+        out.append(
+            f"{lengths.format_length(heights.supported_by)} of supports{heights.note_if_assumed('supported_by')}"
+        )
     sold, least = heights.dowel, "" if heights.dowel is not None else "at least "
     deep = heights.peg_length - heights.above_plate
-    out.append(f"{least}{lengths.words(deep)} in the {plate.noun}")
+    out.append(f"{least}{lengths.format_length(deep)} in the {plate.noun}")
     name = f"Length of a {plate.peg}" if sold is None else f"Dowels of {sold.name}, {sold.standard}"
-    column.paragraph(f"{name}: {' + '.join(out)}.", NOTE)
+    column.write_paragraph(f"{name}: {' + '.join(out)}.", NOTE)
     if deep > heights.plate_thickness and "plate_thickness" not in heights.assumed:
-        column.paragraph(
-            f"They reach {lengths.words(deep - heights.plate_thickness)} below the {plate.noun}: leave room "
+        column.write_paragraph(
+            f"They reach {lengths.format_length(deep - heights.plate_thickness)} below the {plate.noun}: leave room "
             "for that.",
             NOTE,
         )
-    pressed = pressed_up_to(sheet, heights)
+    pressed = find_highest_press(sheet, heights)
     if pressed is not None:
         shorter = find_shortest_dowel(sheet.toolkit.peg_diameter or 0.0, pressed + heights.supported_by)
         what = "shorter ones" if shorter is None else f"dowels of {shorter.name}"
-        column.paragraph(
-            f"No {plate.peg} is pressed above {lengths.words(pressed)}, so {what} are long enough too.", NOTE
+        column.write_paragraph(
+            f"No {plate.peg} is pressed above {lengths.format_length(pressed)}, so {what} are long enough too.",
+            NOTE,
         )
 
 
-def length_words(item: HardwareItem, sheet: Sheet) -> str:
-    """How long a thing is, or the dowel that would do for pegs of whose length nothing was said."""
+def describe_length(item: HardwareItem, sheet: Sheet) -> str:
+    """Return how long a thing is, or the dowel that would do for pegs of whose length nothing was said."""
     if item.length is not None:
         return sheet.lengths.number(item.length)
     heights = sheet.heights
-    usual = usual_dowel(sheet, heights) if item.of_pegs and heights is not None else None
+    usual = find_usual_dowel(sheet, heights) if item.of_pegs and heights is not None else None
     return "–" if usual is None else usual.name
 
 
-def pressed_up_to(sheet: Sheet, heights: SheetHeights) -> float | None:
-    """The height in mm above which no peg presses, where pegs are as high as the part and need not be.
+def find_highest_press(sheet: Sheet, heights: SheetHeights) -> float | None:
+    """Return the height in mm above which no peg presses, where pegs are as high as the part and need not be.
 
     Shorter pegs press on all that they did, and stand in the way of less.
     """
@@ -124,14 +127,14 @@ class HardwareItem:
     of_pegs: bool = False
 
 
-def hardware_of(
+def list_hardware(
     fixture: Fixture,
     toolkit: Toolkit,
     peg_length: float | None = None,
     supports: tuple[float, float | None] | None = None,
     top_tip: float | None = None,
 ) -> list[HardwareItem]:
-    """What a set-up takes, in the order in which it is put together.
+    """Return what a set-up takes, in the order in which it is put together.
 
     Parameters
     ----------
@@ -144,24 +147,26 @@ def hardware_of(
     >>> from workhold import Plate, Workpiece, design
     >>> part = Workpiece.from_points("bar", [(0, 0), (90, 0), (70, 40), (0, 50)])
     >>> plate = Plate(pitch=20, peg_radius=3, travel=(10, 60))
-    >>> [(one.count, one.name) for one in hardware_of(design(part, plate, best=1)[0], plate)]
+    >>> [(one.count, one.name) for one in list_hardware(design(part, plate, best=1)[0], plate)]
     [(3, 'locators'), (1, 'clamp'), (1, 'bolt for a clamp')]
     """
     items: list[HardwareItem] = []
-    placed = [(toolkit.carrier(peg.carrier), peg) for peg in fixture.placed]
+    placed = [(toolkit.find_carrier(peg.carrier), peg) for peg in fixture.placed]
     pegs = [carrier for carrier, _ in placed if carrier.contact is not CLAMP_TIP]
     kinds = Counter((c.peg, c.peg_radius, c.flat is not None) for c in pegs)
     for (name, radius, flat), count in kinds.items():
         note = "with a flat" if flat else ""
-        items.append(HardwareItem(count, plural(name, count), 2 * radius or None, peg_length, note, True))
+        items.append(
+            HardwareItem(count, format_count(name, count), 2 * radius or None, peg_length, note, True)
+        )
     if supports is not None:
         items.append(HardwareItem(3, "supports", *supports))
     clamps = [carrier for carrier, _ in placed if carrier.contact is CLAMP_TIP]
     for (name, radius), count in Counter((c.noun, c.peg_radius) for c in clamps).items():
-        items.append(HardwareItem(count, plural(name, count), 2 * radius or None, None, OF_TIP))
+        items.append(HardwareItem(count, format_count(name, count), 2 * radius or None, None, OF_TIP))
     bolted = sum(all(carrier.counted) for carrier in clamps)
     if bolted:
-        words = f"{plural('bolt', bolted)} for {'a clamp' if bolted == 1 else 'clamps'}"
+        words = f"{format_count('bolt', bolted)} for {'a clamp' if bolted == 1 else 'clamps'}"
         items.append(HardwareItem(bolted, words))
     if top_tip is not None:
         items.append(HardwareItem(1, "clamp on top", top_tip, None, OF_TIP))
@@ -169,5 +174,5 @@ def hardware_of(
     return [*items, *(HardwareItem(1, carrier.noun) for carrier in walls)]
 
 
-def plural(noun: str, count: int) -> str:
+def format_count(noun: str, count: int) -> str:
     return noun if count == 1 else f"{noun}s"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from workhold.drawing.annotation import dimension
+from workhold.drawing.annotation import draw_dimension
 from workhold.drawing.bench import PART_FILL, TOUCHED
 from workhold.drawing.carriers import draw_jaw
 from workhold.drawing.panel import TextColumn
@@ -25,7 +25,7 @@ JAW_SHARE, PARALLEL_SHARE, WIDEST_PARALLEL = 0.28, 0.2, 8.0
 def draw_jaw_side(
     column: TextColumn, fixture: Fixture, jaws: JawPair, height: float | None, lengths: LengthUnit
 ) -> None:
-    """Draws the view from the left end of the jaws into a column, the fixed jaw at the left.
+    """Draw the view from the left end of the jaws into a column, the fixed jaw at the left.
 
     ``height`` is that of the part in mm; nothing is drawn where nobody knows it.
     """
@@ -33,12 +33,12 @@ def draw_jaw_side(
     if hold is None or height is None:
         return
     opening, low = hold.opening, -hold.parallels
-    top = height if jaws.height is None else jaws.top(hold.parallels)
+    top = height if jaws.height is None else jaws.compute_top(hold.parallels)
     thick = JAW_SHARE * opening
     bed = 0.12 * (height - low)
     extent = Box(-thick, low - bed, opening + thick, max(height, top))
     room = Box(column.x, column.y + 14, column.x + column.width - BESIDE, column.y + HIGHEST)
-    view = View.fitting(extent, room)
+    view = View.fit_box(extent, room)
     # The view stands at the upper left of its room.
     (x, y), left = view((extent.x0, extent.y1)), view.left
     view = View(view.scale, left - (x - room.x0), view.top - (y - room.y0))
@@ -48,13 +48,18 @@ def draw_jaw_side(
     draw_part_side(scene, view, fixture, height)
     draw_heights(scene, view, fixture, top, height, lengths)
     start, end = view((0.0, extent.y0)), view((opening, extent.y0))
-    dimension(
-        scene, (start[0], foot + 22), (end[0], foot + 22), f"S = {lengths.words(opening)}", 12, bold=True
+    draw_dimension(
+        scene,
+        (start[0], foot + 22),
+        (end[0], foot + 22),
+        f"S = {lengths.format_length(opening)}",
+        12,
+        bold=True,
     )
     for x in (start[0], end[0]):
-        scene.line([(x, foot + 2), (x, foot + 25)], GREY, 0.6)
-    scene.text((view((-thick / 2, 0))[0], foot + 10), "fixed", 10, "middle", fill=GREY)
-    scene.text((view((opening + thick / 2, 0))[0], foot + 10), "moving", 10, "middle", fill=GREY)
+        scene.add_line([(x, foot + 2), (x, foot + 25)], GREY, 0.6)
+    scene.add_text((view((-thick / 2, 0))[0], foot + 10), "fixed", 10, "middle", fill=GREY)
+    scene.add_text((view((opening + thick / 2, 0))[0], foot + 10), "moving", 10, "middle", fill=GREY)
     column.y = foot + BELOW + 4
 
 
@@ -68,30 +73,30 @@ def draw_bodies(
     bed: float,
     low: float,
 ) -> None:
-    """Draws the bed, both jaws and the parallels."""
-    scene.rectangle(view.box(Box(-thick, low - bed, opening + thick, low)), "#dfe3e8", GREY, 1.0)
-    draw_jaw(scene, view.box(Box(-thick, low, 0.0, top)), "right")
-    draw_jaw(scene, view.box(Box(opening, low, opening + thick, top)), "left")
+    """Draw the bed, both jaws and the parallels."""
+    scene.add_rectangle(view.map_box(Box(-thick, low - bed, opening + thick, low)), "#dfe3e8", GREY, 1.0)
+    draw_jaw(scene, view.map_box(Box(-thick, low, 0.0, top)), "right")
+    draw_jaw(scene, view.map_box(Box(opening, low, opening + thick, top)), "left")
     if parallels:
         wide = min(PARALLEL_SHARE * opening, WIDEST_PARALLEL)
         for y in (0.0, opening - wide):
-            scene.rectangle(view.box(Box(y, low, y + wide, 0.0)), "#eef0f3", GREY, 1.0)
+            scene.add_rectangle(view.map_box(Box(y, low, y + wide, 0.0)), "#eef0f3", GREY, 1.0)
 
 
 def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) -> None:
-    """Draws the part and the heights at which the jaws touch it."""
+    """Draw the part and the heights at which the jaws touch it."""
     hold = fixture.hold
     assert hold is not None
-    scene.rectangle(view.box(Box(0.0, 0.0, hold.opening, height)), PART_FILL, BLACK, 1.6)
+    scene.add_rectangle(view.map_box(Box(0.0, 0.0, hold.opening, height)), PART_FILL, BLACK, 1.6)
     for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
         low, high = min(one[2] for one in patch.rectangles), max(one[3] for one in patch.rectangles)
-        scene.line([view((y, low)), view((y, high))], TOUCHED, 6.0)
+        scene.add_line([view((y, low)), view((y, high))], TOUCHED, 6.0)
 
 
 def draw_heights(
     scene: Scene, view: View, fixture: Fixture, top: float, height: float, lengths: LengthUnit
 ) -> None:
-    """Dimensions the grip, what stands above the jaws, and the parallels, at the right."""
+    """Dimension the grip, what stands above the jaws, and the parallels, at the right."""
     hold = fixture.hold
     assert hold is not None
     edge = view((hold.opening * 1.28, 0.0))[0]
@@ -105,9 +110,9 @@ def draw_heights(
     for name, low, high in spans:
         (_, y0), (_, y1) = view((0.0, low)), view((0.0, high))
         for y in (y0, y1):
-            scene.line([(edge + 2, y), (x + 5, y)], GREY, 0.6)
-        scene.line([(x, y0), (x, y1)], BLACK, 1.0)
+            scene.add_line([(edge + 2, y), (x + 5, y)], GREY, 0.6)
+        scene.add_line([(x, y0), (x, y1)], BLACK, 1.0)
         # Words of what is low give way downward, so that none covers another.
         middle = lowest = max((y0 + y1) / 2, lowest + LABEL_ROOM)
-        scene.text((x + 8, middle - 5.5), name, 10, fill=GREY)
-        scene.text((x + 8, middle + 5.5), lengths.short(high - low, 4), 11, bold=True)
+        scene.add_text((x + 8, middle - 5.5), name, 10, fill=GREY)
+        scene.add_text((x + 8, middle + 5.5), lengths.format_short(high - low, 4), 11, bold=True)

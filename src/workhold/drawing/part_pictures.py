@@ -10,9 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.contact.features import list_contact_features
-from workhold.drawing.annotation import Label, LabelPlacer, Place, around, dimension, joined, scale_bar
-from workhold.drawing.bench import ARROW, PART_FILL, outline_path, sampled, sampled_loop, segment_path
-from workhold.drawing.panel import plural
+from workhold.drawing.annotation import (
+    Label,
+    LabelPlacer,
+    Place,
+    draw_dimension,
+    join_labels,
+    make_label_around,
+    scale_bar,
+)
+from workhold.drawing.bench import (
+    ARROW,
+    PART_FILL,
+    make_outline_path,
+    make_segment_path,
+    sample_loop,
+    sample_segments,
+)
+from workhold.drawing.panel import format_count
 from workhold.drawing.scene import (
     BLACK,
     GREY,
@@ -22,8 +37,8 @@ from workhold.drawing.scene import (
     LengthUnit,
     Scene,
     View,
-    shortened,
-    text_width,
+    measure_text,
+    shorten_text,
 )
 from workhold.geometry.loop import Face, loop_segments
 from workhold.geometry.segment import Arc, Segment, bounding_box
@@ -41,7 +56,7 @@ LEADER = "#6b4a00"
 
 
 def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit: Unit = MILLIMETRE) -> str:
-    """Draws the part with numbered faces, overall size and scale, on A4; on A3 or A2 above 80 faces.
+    """Draw the part with numbered faces, overall size and scale, on A4; on A3 or A2 above 80 faces.
 
     Parameters
     ----------
@@ -53,47 +68,49 @@ def draw_features(workpiece: Workpiece, *, peg_radius: float | None = None, unit
         SVG text; the group of class ``part`` carries the map from mm to the page, as in :func:`draw_fixture`.
     """
     bounds = Box(*workpiece.bounds)
-    lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
-    page = sheet(len(workpiece.faces), LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT)
+    lengths = LengthUnit.from_typical_length(unit, max(bounds.width, bounds.height))
+    page = choose_page_size(
+        len(workpiece.faces), LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT
+    )
     numbers = MORE_NUMBERS if len(workpiece.faces) > MANY_FACES else NUMBERS
     margin = numbers + DIMENSIONS
     drawing = Box(EDGE, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER)
     room = Box(drawing.x0 + margin, drawing.y0 + numbers, drawing.x1 - numbers, drawing.y1 - margin)
-    view = View.fitting(bounds, room)
-    scene = Scene.page(page, f"{workpiece.name}: faces")
-    draw_header(scene, page, workpiece.name, part_words(workpiece, bounds, peg_radius, lengths))
+    view = View.fit_box(bounds, room)
+    scene = Scene.make_page(page, f"{workpiece.name}: faces")
+    draw_header(scene, page, workpiece.name, describe_part(workpiece, bounds, peg_radius, lengths))
     draw_outline(scene, workpiece, view)
     features = list[Segment]()
     if peg_radius is not None:
         features = [feature.segment for feature in list_contact_features(workpiece, peg_radius)]
         group = scene.group("contact-features", view)
         for segment in features:
-            group.path(segment_path(segment, view), ARROW, 1.4, stroke_dasharray="7 4")
-    draw_numbers(scene, workpiece, view, view.box(bounds).grown(numbers - 6), features)
+            group.add_path(make_segment_path(segment, view), ARROW, 1.4, stroke_dasharray="7 4")
+    draw_numbers(scene, workpiece, view, view.map_box(bounds).grown(numbers - 6), features)
     draw_overall(scene, bounds, view, numbers, lengths)
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
-    return scene.svg()
+    return scene.to_svg()
 
 
-def sheet(faces: int, page: tuple[float, float]) -> tuple[float, float]:
-    """An A4 page, or A3 or A2 for parts with so many faces that their numbers need the room."""
+def choose_page_size(faces: int, page: tuple[float, float]) -> tuple[float, float]:
+    """Return an A4 page, or A3 or A2 for parts with so many faces that their numbers need the room."""
     larger = 1.0 if faces <= VERY_MANY_FACES else 2**0.5 if faces <= 2 * VERY_MANY_FACES else 2.0
     return round(larger * page[0]), round(larger * page[1])
 
 
 def draw_header(scene: Scene, page: tuple[float, float], name: str, words: str) -> None:
-    """Writes the name of what is drawn on a page, and a line of words below it, each shortened to fit."""
+    """Write the name of what is drawn on a page, and a line of words below it, each shortened to fit."""
     group, width = scene.group("header"), page[0] - 2 * EDGE
-    group.text((EDGE, EDGE + 12), shortened(name, 26, width, bold=True), 26, bold=True)
-    group.text((EDGE, EDGE + 40), shortened(words, 14, width), 14, fill=GREY)
+    group.add_text((EDGE, EDGE + 12), shorten_text(name, 26, width, bold=True), 26, bold=True)
+    group.add_text((EDGE, EDGE + 40), shorten_text(words, 14, width), 14, fill=GREY)
 
 
-def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
+def describe_part(workpiece: Workpiece, bounds: Box, peg_radius: float | None, lengths: LengthUnit) -> str:
     faces, holes = len(workpiece.faces), len(workpiece.hole_segments)
-    words = [plural(faces, "face"), plural(holes, "hole") if holes else "no holes"]
-    words.append(f"{lengths.number(bounds.width)} × {lengths.words(bounds.height)}")
+    words = [format_count(faces, "face"), format_count(holes, "hole") if holes else "no holes"]
+    words.append(f"{lengths.number(bounds.width)} × {lengths.format_length(bounds.height)}")
     if peg_radius is not None:
-        size = lengths.short(2 * peg_radius)
+        size = lengths.format_short(2 * peg_radius)
         words.append(f"dashed: where the centre of a peg of Ø {size} lies when it touches a face")
     if len(workpiece.segments) > faces:
         words.append("a face drawn in pieces has the number of the first")
@@ -102,39 +119,39 @@ def part_words(workpiece: Workpiece, bounds: Box, peg_radius: float | None, leng
 
 def draw_outline(scene: Scene, workpiece: Workpiece, view: View) -> None:
     part = scene.group("part", view)
-    d = outline_path(workpiece.loop_segments, view)
-    part.path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
+    d = make_outline_path(workpiece.loop_segments, view)
+    part.add_path(d, BLACK, 2.2, PART_FILL, fill_rule="evenodd", **{"class": "outline"})
     ticks = scene.group("joints")
     for loop in workpiece.loop_segments:
         for k, segment in enumerate(loop):
-            ax, ay = segment.normal(first_parameter(segment))
-            bx, by = loop[k - 1].normal(-first_parameter(loop[k - 1]))
+            ax, ay = segment.normal(compute_first_parameter(segment))
+            bx, by = loop[k - 1].normal(-compute_first_parameter(loop[k - 1]))
             nx, ny = ax + bx, ay + by
             length = hypot(nx, ny)
             if length < 1e-6:
                 nx, ny, length = ax, ay, 1.0
             x, y = view(segment.start)
             dx, dy = 5.5 * nx / length, -5.5 * ny / length
-            ticks.line([(x - dx, y - dy), (x + dx, y + dy)], BLACK, 1.2)
+            ticks.add_line([(x - dx, y - dy), (x + dx, y + dy)], BLACK, 1.2)
 
 
-def first_parameter(segment: Segment) -> float:
-    """Parameter at which a segment is entered; it is left at minus that."""
+def compute_first_parameter(segment: Segment) -> float:
+    """Return the parameter at which a segment is entered; it is left at minus that."""
     return -segment.sign * segment.half_sweep if isinstance(segment, Arc) else -segment.half_extent
 
 
 def draw_numbers(
     scene: Scene, workpiece: Workpiece, view: View, bounds: Box, features: Sequence[Segment]
 ) -> None:
-    """Writes the numbers of all faces on the side away from the material, each with a leader."""
+    """Write the numbers of all faces on the side away from the material, each with a leader."""
     count = len(workpiece.faces)
     size = 15.0 if count <= MANY_FACES else 12.0
     shares = (0.0, 0.3, -0.3, 0.6, -0.6) if count <= VERY_MANY_FACES else (0.0,)
     placer = LabelPlacer(bounds)
     for loop in workpiece.loop_segments:
-        placer.avoid_ink(sampled_loop(loop, view, 3.0), 5.0)
-        placer.avoid_walls(sampled_loop(loop, view, 12.0))
-    placer.avoid_ink(sampled(features, view, 3.0), 0.6)
+        placer.avoid_ink(sample_loop(loop, view, 3.0), 5.0)
+        placer.avoid_walls(sample_loop(loop, view, 12.0))
+    placer.avoid_ink(sample_segments(features, view, 3.0), 0.6)
     outer = workpiece.outer_count
     places = placer.place(
         [number_label(face, view, size, shares, face.number < outer) for face in workpiece.faces]
@@ -147,23 +164,23 @@ def draw_numbers(
 
 
 def draw_leader(scene: Scene, place: Place) -> None:
-    scene.line(place.leader(), LEADER, 0.9)
-    scene.circle(place.anchor, 1.7, LEADER)
+    scene.add_line(place.compute_leader(), LEADER, 0.9)
+    scene.add_circle(place.anchor, 1.7, LEADER)
 
 
 def write_number(scene: Scene, place: Place, number: int, size: float) -> None:
-    scene.rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
-    scene.text(place.box.center, str(number), size, "middle", bold=True)
+    scene.add_rectangle(place.box, "#ffffff", LEADER, 0.9, place.box.height / 2)
+    scene.add_text(place.box.center, str(number), size, "middle", bold=True)
 
 
 def number_label(face: Face, view: View, size: float, shares: Sequence[float], outer: bool) -> Label:
-    """Candidates for the number of a face: along its normal, then turned and further off.
+    """Return the candidates for the number of a face: along its normal, then turned and further off.
 
     They begin at shares of the face's half extent. Inside the material is a last resort, meant for holes too
     small to hold a number.
     """
     height = size + 6
-    width = max(height, text_width(str(face.number), size, bold=True) + 10)
+    width = max(height, measure_text(str(face.number), size, bold=True) + 10)
     turns = [0.0, *(sign * k * pi / 12 for k in range(1, 6) for sign in (1, -1))]
     distances = [size * k for k in (0.7, 1.1, 1.7, 2.4, 3.2, 4.2)]
     labels = []
@@ -172,24 +189,26 @@ def number_label(face: Face, view: View, size: float, shares: Sequence[float], o
         nx, ny = face.segment.normal(parameter)
         anchor = view(face.segment.at(parameter))
         extra, inward = 12.0 * abs(share), 90.0 if outer else 25.0
-        labels.append(around(anchor, atan2(-ny, nx), (width, height), distances, turns, extra))
+        labels.append(make_label_around(anchor, atan2(-ny, nx), (width, height), distances, turns, extra))
         labels.append(
-            around(anchor, atan2(ny, -nx), (width, height), distances[:4], turns[:7], extra + inward)
+            make_label_around(
+                anchor, atan2(ny, -nx), (width, height), distances[:4], turns[:7], extra + inward
+            )
         )
-    return joined(labels)
+    return join_labels(labels)
 
 
 def draw_overall(scene: Scene, bounds: Box, view: View, numbers: float, lengths: LengthUnit) -> None:
     group = scene.group("overall")
-    box = view.box(bounds)
+    box = view.map_box(bounds)
     y = box.y1 + numbers + 22
     for x in (box.x0, box.x1):
-        group.line([(x, box.y1 + 10), (x, y + 4)], GREY, 0.6)
-    dimension(group, (box.x0, y), (box.x1, y), lengths.words(bounds.width))
+        group.add_line([(x, box.y1 + 10), (x, y + 4)], GREY, 0.6)
+    draw_dimension(group, (box.x0, y), (box.x1, y), lengths.format_length(bounds.width))
     x = box.x0 - numbers - 8
     for y in (box.y0, box.y1):
-        group.line([(box.x0 - 10, y), (x - 4, y)], GREY, 0.6)
-    dimension(group, (x, box.y1), (x, box.y0), lengths.words(bounds.height))
+        group.add_line([(box.x0 - 10, y), (x - 4, y)], GREY, 0.6)
+    draw_dimension(group, (x, box.y1), (x, box.y0), lengths.format_length(bounds.height))
 
 
 OTHER_FILL = "#eef0f3"
@@ -200,7 +219,7 @@ MOST_NUMBERS = 60
 def draw_parts(
     name: str, parts: Sequence[Sequence[NDArray[np.float64]]], chosen: int, *, unit: Unit = MILLIMETRE
 ) -> str:
-    """Draws the parts of a file where they lie, each with its number, on A4.
+    """Draw the parts of a file where they lie, each with its number, on A4.
 
     Parameters
     ----------
@@ -215,31 +234,31 @@ def draw_parts(
     loops = [[loop_segments(vertices) for vertices in part] for part in parts]
     segments = (segment for part in loops for loop in part for segment in loop)
     bounds = reduce(Box.union, (Box(*bounding_box(segment)) for segment in segments))
-    lengths = LengthUnit.suiting(unit, max(bounds.width, bounds.height))
+    lengths = LengthUnit.from_typical_length(unit, max(bounds.width, bounds.height))
     page = LANDSCAPE if bounds.width >= 0.8 * bounds.height else PORTRAIT
     drawing = Box(EDGE, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER).grown(-30)
-    view = View.fitting(bounds, drawing)
-    scene = Scene.page(page, f"{name}: parts")
-    words = f"{plural(len(parts), 'part')}, numbered by decreasing area"
+    view = View.fit_box(bounds, drawing)
+    scene = Scene.make_page(page, f"{name}: parts")
+    words = f"{format_count(len(parts), 'part')}, numbered by decreasing area"
     draw_header(scene, page, name, f"{words} · part {chosen} is the one that is used")
     for number, part in reversed(list(enumerate(loops, start=1))):
         fill = PART_FILL if number == chosen else OTHER_FILL
-        scene.group(f"part-{number}", view).path(
-            outline_path(part, view), BLACK, 1.4, fill, fill_rule="evenodd"
+        scene.group(f"part-{number}", view).add_path(
+            make_outline_path(part, view), BLACK, 1.4, fill, fill_rule="evenodd"
         )
     placer = LabelPlacer(drawing.grown(28))
     for part in loops:
         for loop in part:
-            placer.avoid_ink(sampled_loop(loop, view, 4.0), 2.0)
+            placer.avoid_ink(sample_loop(loop, view, 4.0), 2.0)
     labels = []
     for number, part in enumerate(loops[:MOST_NUMBERS], start=1):
-        size = (max(22.0, text_width(str(number), 15.0, bold=True) + 12), 22.0)
+        size = (max(22.0, measure_text(str(number), 15.0, bold=True) + 12), 22.0)
         # A place within the material beside the outline's first segment, or else about there.
         anchor, turns = view(part[0][0].at(0.0)), [k * pi / 6 for k in range(12)]
-        labels.append(around(anchor, 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
+        labels.append(make_label_around(anchor, 0.0, size, [4.0, 14.0, 26.0, 40.0], turns, turn_cost=0.0))
     group = scene.group("part-numbers")
     for number, place in enumerate(placer.place(labels), start=1):
         draw_leader(group, place)
         write_number(group, place, number, 15.0)
     scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, lengths)
-    return scene.svg()
+    return scene.to_svg()

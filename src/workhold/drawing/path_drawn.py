@@ -13,8 +13,8 @@ import numpy as np
 from attrs import astuple, frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, around
-from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, number, text_width
+from workhold.drawing.annotation import Label, LabelPlacer, Place, make_label_around
+from workhold.drawing.scene import GREY, Box, LengthUnit, Scene, View, measure_text, number
 from workhold.model.fixture import Fixture
 from workhold.model.moves import Moves, along
 from workhold.model.pose import Pose
@@ -30,10 +30,10 @@ __all__ = [
     "PathLook",
     "PlannedPath",
     "draw_paths",
-    "heights_cut",
-    "moves_by_look",
-    "planned_path",
-    "shaded",
+    "find_heights_cut",
+    "group_moves_by_look",
+    "make_planned_path",
+    "shade_colour",
 ]
 
 Floats = NDArray[np.float64]
@@ -70,8 +70,10 @@ class PagePaths:
     scale: float
 
     @classmethod
-    def of(cls, moves: Moves, view: View, pose: Pose | None = None, box: Box | None = None) -> PagePaths:
-        """The moves as a view shows them.
+    def from_moves(
+        cls, moves: Moves, view: View, pose: Pose | None = None, box: Box | None = None
+    ) -> PagePaths:
+        """Return the moves as a view shows them.
 
         Parameters
         ----------
@@ -86,10 +88,10 @@ class PagePaths:
             ends.append(np.column_stack([view.left + view.scale * x, view.top - view.scale * y]))
         shown = np.ones(len(moves), dtype=bool)
         if box is not None:
-            first, last = shares_inside(ends[0], ends[1], box)
+            first, last = clip_to_box(ends[0], ends[1], box)
             middle = along(ends[0], ends[1], -moves.bulge, np.full(len(moves), 0.5))
             is_arc = moves.bulge != 0.0
-            arc_inside = np.all([within(points, box) for points in (*ends, middle)], axis=0)
+            arc_inside = np.all([are_in_box(points, box) for points in (*ends, middle)], axis=0)
             shown = np.where(is_arc, arc_inside, first <= last)
             start, reach = ends[0].copy(), ends[1] - ends[0]
             cut = np.flatnonzero(shown & ~is_arc & ((first > 0.0) | (last < 1.0)))
@@ -97,8 +99,8 @@ class PagePaths:
             ends[1][cut] = start[cut] + last[cut, None] * reach[cut]
         return cls(ends[0], ends[1], moves.bulge, shown, view.scale)
 
-    def data(self, rows: NDArray[np.int64]) -> str:
-        """SVG path data of some moves; a move that goes on where the last one ended begins no new line."""
+    def make_path_data(self, rows: NDArray[np.int64]) -> str:
+        """Return SVG path data of some moves; a move that goes on where the last one ended begins no new line."""
         rows = rows[self.shown[rows]]
         middle = along(self.start[rows], self.end[rows], -self.bulge[rows], np.full(len(rows), 0.5))
         found: list[str] = []
@@ -111,42 +113,42 @@ class PagePaths:
             if one != last:
                 # What was passed over of a line before is its end.
                 if last is not None and written != last:
-                    found.append(f"L{page_point(last)}")
-                found.append(f"M{page_point(one)}")
+                    found.append(f"L{format_page_point(last)}")
+                found.append(f"M{format_page_point(one)}")
                 written = one
             last = other
             if not bent:
                 if one == other or hypot(other[0] - written[0], other[1] - written[1]) >= SHORTEST:
-                    found.append(f"L{page_point(other)}")
+                    found.append(f"L{format_page_point(other)}")
                     written = other
                 continue
             if written != one:
-                found.append(f"L{page_point(one)}")
+                found.append(f"L{format_page_point(one)}")
             chord = hypot(other[0] - one[0], other[1] - one[1])
             radius = number(chord * (1 + bent * bent) / (4 * abs(bent)))
             # Half a turn is drawn in two pieces, of which the direction is clear.
             for place in [other] if 4 * np.arctan(abs(bent)) <= 0.9 * pi else [half, other]:
-                found.append(f"A{radius} {radius} 0 0 {0 if bent > 0 else 1} {page_point(place)}")
+                found.append(f"A{radius} {radius} 0 0 {0 if bent > 0 else 1} {format_page_point(place)}")
             written = other
         if last is not None and written != last:
-            found.append(f"L{page_point(last)}")
+            found.append(f"L{format_page_point(last)}")
         return "".join(found)
 
 
-def page_point(point: Sequence[float]) -> str:
-    """The numbers of a page point in path data."""
+def format_page_point(point: Sequence[float]) -> str:
+    """Return the numbers of a page point in path data."""
     return f"{number(point[0])} {number(point[1])}"
 
 
-def within(points: Floats, box: Box) -> NDArray[np.bool_]:
-    """Whether page points (N, 2) are inside a box."""
+def are_in_box(points: Floats, box: Box) -> NDArray[np.bool_]:
+    """Return whether page points (N, 2) are inside a box."""
     x, y = points.T
     inside: NDArray[np.bool_] = (box.x0 <= x) & (x <= box.x1) & (box.y0 <= y) & (y <= box.y1)
     return inside
 
 
-def shares_inside(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
-    """The shares (N,) of straight lines from which and until which they are inside a box.
+def clip_to_box(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
+    """Return the shares (N,) of straight lines from which and until which they are inside a box.
 
     The first is larger where a line is nowhere inside (Y.-D. Liang, B. A. Barsky 1984).
     """
@@ -179,14 +181,14 @@ class PathLook:
     level: int = -1
 
 
-def moves_by_look(program: Program) -> Iterator[tuple[PathLook, NDArray[np.int64]]]:
-    """The numbers of moves that look alike, in drawing order: bands, rapids, then cuts from above."""
+def group_moves_by_look(program: Program) -> Iterator[tuple[PathLook, NDArray[np.int64]]]:
+    """Yield the numbers of moves that look alike, in drawing order: bands, rapids, then cuts from above."""
     moves, figures = program.moves, measure_tools(program)
     for place, one in enumerate(figures):
         yield PathLook("band", place, one.tool), np.flatnonzero((moves.tool == one.tool) & moves.cutting)
     flat = (moves.start[:, :2] != moves.end[:, :2]).any(axis=1)
     yield PathLook("rapid"), np.flatnonzero(~moves.cutting & flat)
-    low, high = heights_cut(program)
+    low, high = find_heights_cut(program)
     middle = (moves.start[:, 2] + moves.end[:, 2]) / 2
     shade = np.clip(((middle - low) / max(high - low, 1e-9) * SHADES).astype(int), 0, SHADES - 1)
     for level in range(SHADES - 1, -1, -1):
@@ -197,11 +199,11 @@ def moves_by_look(program: Program) -> Iterator[tuple[PathLook, NDArray[np.int64
 
 
 def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float = 1.0) -> None:
-    """Draws bands as wide as the flutes, rapid moves dashed, and the axes at cutting moves, high ones first.
+    """Draw bands as wide as the flutes, rapid moves dashed, and the axes at cutting moves, high ones first.
 
     Upright cutting moves are dots.
     """
-    for look, rows in moves_by_look(program):
+    for look, rows in group_moves_by_look(program):
         colour = COLOURS[look.place % len(COLOURS)]
         match look.kind:
             case "band":
@@ -211,28 +213,28 @@ def draw_paths(group: Scene, program: Program, paths: PagePaths, weight: float =
                 add(group, paths, rows, GREY, 1.0 * weight, "rapid", stroke_dasharray="6 5")
             case _:
                 wide = (1.8 if look.kind == "cut" else 5.0) * weight
-                add(group, paths, rows, shaded(colour, look.level), wide, f"cut-{look.tool}")
+                add(group, paths, rows, shade_colour(colour, look.level), wide, f"cut-{look.tool}")
 
 
 def add(
     group: Scene, paths: PagePaths, rows: NDArray[np.int64], colour: str, wide: float, name: str, **more: str
 ) -> None:
-    d = paths.data(rows)
+    d = paths.make_path_data(rows)
     if d:
-        group.path(d, colour, wide, stroke_linecap="round", **{"class": name}, **more)
+        group.add_path(d, colour, wide, stroke_linecap="round", **{"class": name}, **more)
 
 
-def heights_cut(program: Program) -> tuple[float, float]:
-    """The least and the greatest height of the tip at cutting moves, in mm."""
+def find_heights_cut(program: Program) -> tuple[float, float]:
+    """Return the least and the greatest height of the tip at cutting moves, in mm."""
     cut = program.moves.cutting
     heights = np.concatenate([program.moves.start[cut, 2], program.moves.end[cut, 2], [program.z_zero]])
     return float(heights.min()), float(heights.max())
 
 
-def shaded(colour: str, level: int) -> str:
-    """A colour at a level, from 0, the lowest and darkest.
+def shade_colour(colour: str, level: int) -> str:
+    """Return a colour at a level, from 0, the lowest and darkest.
 
-    >>> shaded("#808080", 0), shaded("#808080", SHADES - 1)
+    >>> shade_colour("#808080", 0), shade_colour("#808080", SHADES - 1)
     ('#464646', '#cccccc')
     """
     share = level / (SHADES - 1)
@@ -261,8 +263,8 @@ class PlannedPath:
     passing: Passing | None
     peg_height: float | None = None
 
-    def grown(self, extent: Box) -> Box:
-        """An extent (mm) of the plan with what is cut as well, where that makes it not much larger."""
+    def enlarge_extent(self, extent: Box) -> Box:
+        """Return an extent (mm) of the plan with what is cut as well, where that makes it not much larger."""
         program = self.program
         moves, cut = program.moves, program.moves.cutting
         if not cut.any():
@@ -278,7 +280,7 @@ class PlannedPath:
         return union if small else extent
 
     def place(self) -> tuple[float, float]:
-        """The point of the nearest move that is nearest to what it passes, in mm in the vise frame."""
+        """Return the point of the nearest move that is nearest to what it passes, in mm in the vise frame."""
         assert self.passing is not None
         path, peg = self.passing.path, self.fixture.pegs[self.passing.contact]
         points = np.array([vertex[:2] for vertex in path])
@@ -293,52 +295,54 @@ class PlannedPath:
         return float(x[nearest]), float(y[nearest])
 
     def draw(self, scene: Scene, view: View, box: Box) -> None:
-        """Draws the paths as far as they are inside a box of the page, and the nearest move over them."""
+        """Draw the paths as far as they are inside a box of the page, and the nearest move over them."""
         pose = self.fixture.pose
         group = scene.group("paths", view)
-        draw_paths(group, self.program, PagePaths.of(self.program.moves, view, pose, box), 0.8)
+        draw_paths(group, self.program, PagePaths.from_moves(self.program.moves, view, pose, box), 0.8)
         if self.passing is None:
             return
         path = self.passing.path
         ends = np.array([[*path[0][:2], 0.0], [*path[-1][:2], 0.0]])
         row = (self.passing.line, self.passing.tool, True, ends[0], ends[1], path[0][2], 0.0, 0.0)
-        paths = PagePaths.of(Moves.of_rows([row]), view, pose, box)
+        paths = PagePaths.from_moves(Moves.of_rows([row]), view, pose, box)
         only = np.zeros(1, np.int64)
         wide = 2 * self.passing.radius * view.scale
         add(group, paths, only, NEAREST, wide, "nearest-band", stroke_opacity="0.16")
         add(group, paths, only, NEAREST, 2.6, "nearest")
-        if within(np.array([view(self.place())]), box)[0]:
-            group.circle(view(self.place()), 3.6, "#ffffff", NEAREST, 1.8, **{"class": "nearest-place"})
+        if are_in_box(np.array([view(self.place())]), box)[0]:
+            group.add_circle(view(self.place()), 3.6, "#ffffff", NEAREST, 1.8, **{"class": "nearest-place"})
 
-    def words(self, lengths: LengthUnit) -> str:
-        """What the label of the nearest move says, such as "line 54, T2: 12.867 mm"."""
+    def describe_nearest_move(self, lengths: LengthUnit) -> str:
+        """Return what the label of the nearest move says, such as "line 54, T2: 12.867 mm"."""
         assert self.passing is not None
         near = self.passing
-        return f"line {near.line}, T{near.tool}: {lengths.words(near.distance)}"
+        return f"line {near.line}, T{near.tool}: {lengths.format_length(near.distance)}"
 
-    def avoided(self, placer: LabelPlacer, view: View) -> None:
-        """Marks where the nearest move is, so that labels keep off."""
+    def keep_labels_off(self, placer: LabelPlacer, view: View) -> None:
+        """Mark where the nearest move is, so that labels keep off."""
         if self.passing is not None:
             x, y = view(self.place())
             placer.avoid_box(Box(x, y, x, y).grown(6))
 
-    def labels(self, view: View, lengths: LengthUnit) -> list[Label]:
+    def make_labels(self, view: View, lengths: LengthUnit) -> list[Label]:
         if self.passing is None:
             return []
-        size = (text_width(self.words(lengths), NAME, bold=True) + 8, HIGH)
+        size = (measure_text(self.describe_nearest_move(lengths), NAME, bold=True) + 8, HIGH)
         turns = [2 * pi * k / 24 for k in range(24)]
         gaps = (8, 16, 28, 44, 64, 90)
-        return [around(view(self.place()), -pi / 4, size, gaps, turns, turn_cost=1.0)]
+        return [make_label_around(view(self.place()), -pi / 4, size, gaps, turns, turn_cost=1.0)]
 
     def draw_name(self, scene: Scene, place: Place, lengths: LengthUnit) -> None:
-        """Writes the label of the nearest move where it was placed, with a leader."""
-        scene.line(place.leader(), NEAREST, 1.2)
-        scene.rectangle(place.box, "#ffffff", NEAREST, 1.2, 3)
-        scene.text(place.box.center, self.words(lengths), NAME, "middle", bold=True, fill=NEAREST)
+        """Write the label of the nearest move where it was placed, with a leader."""
+        scene.add_line(place.compute_leader(), NEAREST, 1.2)
+        scene.add_rectangle(place.box, "#ffffff", NEAREST, 1.2, 3)
+        scene.add_text(
+            place.box.center, self.describe_nearest_move(lengths), NAME, "middle", bold=True, fill=NEAREST
+        )
 
 
-def planned_path(result: Result, index: int) -> PlannedPath | None:
-    """The program of a result over its fixture of an index, counted from 0; None without a program."""
+def make_planned_path(result: Result, index: int) -> PlannedPath | None:
+    """Return the program of a result over its fixture of an index, counted from 0; None without a program."""
     query = result.query
     if query.program is None:
         return None

@@ -19,10 +19,10 @@ from fpdf.drawing import DrawingContext, GraphicsStyle, PaintedPath
 from fpdf.drawing_primitives import color_from_hex_string
 from fpdf.enums import TextMode
 
-from workhold.drawing.scene import UNITS_PER_MM, font_files, has_character, text_width
+from workhold.drawing.scene import UNITS_PER_MM, has_character, list_font_files, measure_text
 from workhold.geometry.segment import Point
 
-__all__ = ["svg_to_pdf"]
+__all__ = ["convert_svg_to_pdf"]
 
 POINTS_PER_UNIT = 72 / 25.4 / UNITS_PER_MM
 FONT = "DejaVu Sans"
@@ -47,12 +47,12 @@ STYLE = {
 }
 
 
-def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
-    """Turns pages of SVG into a PDF.
+def convert_svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
+    """Turn pages of SVG into a PDF.
 
     Parameters
     ----------
-    pages : texts written by :meth:`workhold.drawing.scene.Scene.svg`.
+    pages : texts written by :meth:`workhold.drawing.scene.Scene.to_svg`.
     created : the day the document is dated; the bytes depend on nothing else than it and the pages.
 
     Raises
@@ -65,7 +65,7 @@ def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
     pdf.set_auto_page_break(False)
     pdf.set_creation_date(datetime.combine(created, time(), UTC))
     pdf.set_producer("workhold")
-    regular, bold = font_files()
+    regular, bold = list_font_files()
     pdf.add_font(FONT, "", regular)
     pdf.add_font(FONT, "B", bold)
     for svg in pages:
@@ -77,12 +77,12 @@ def svg_to_pdf(pages: Sequence[str], created: date) -> bytes:
 
 
 def draw_children(pdf: FPDF, group: ET.Element) -> None:
-    """Draws the elements of a group one after another; neighbouring shapes share one drawing context."""
+    """Draw the elements of a group one after another; neighbouring shapes share one drawing context."""
     shapes: list[PaintedPath] = []
     for element in group:
         tag = element.tag.rpartition("}")[2]
         if tag in ("rect", "circle", "path"):
-            shapes.append(shape(tag, element.attrib))
+            shapes.append(make_painted_path(tag, element.attrib))
             continue
         draw_shapes(pdf, shapes)
         shapes = []
@@ -108,13 +108,13 @@ def draw_shapes(pdf: FPDF, shapes: list[PaintedPath]) -> None:
 
 
 def refuse_unknown(tag: str, attributes: dict[str, str], known: set[str]) -> None:
-    """Refuses attributes that would be lost on paper."""
+    """Refuse attributes that would be lost on paper."""
     unknown = sorted(set(attributes) - known)
     if unknown:
         raise ValueError(f"no way to print the attributes {', '.join(unknown)} of the SVG element {tag}")
 
 
-def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
+def make_painted_path(tag: str, attributes: dict[str, str]) -> PaintedPath:
     path = PaintedPath()
     if tag == "rect":
         refuse_unknown(tag, attributes, STYLE | SILENT | {"x", "y", "width", "height", "rx"})
@@ -134,7 +134,7 @@ def shape(tag: str, attributes: dict[str, str]) -> PaintedPath:
 
 
 def trace(path: PaintedPath, d: str) -> None:
-    """Follows SVG path data with absolute commands."""
+    """Follow SVG path data with absolute commands."""
     here = (0.0, 0.0)
     for letter, numbers in COMMAND.findall(d):
         values = [float(word) for word in NUMBER.findall(numbers)]
@@ -154,7 +154,7 @@ def trace(path: PaintedPath, d: str) -> None:
 
 
 def trace_arc(path: PaintedPath, start: Point, values: Sequence[float]) -> None:
-    """Follows a circular arc of at most half a turn as two Bezier curves.
+    """Follow a circular arc of at most half a turn as two Bezier curves.
 
     A piece of sweep s has its inner control points 4/3 tan(s/4) radii from its ends along the tangents (A.
     Riskus, *Approximation of a cubic Bezier curve by circular arcs and vice versa*, 2006); two quarter turns
@@ -214,7 +214,7 @@ def draw_text(pdf: FPDF, element: ET.Element) -> None:
         return
     x, y, size = (float(attributes[key]) for key in ("x", "y", "font-size"))
     bold = attributes.get("font-weight") == "bold"
-    x -= {"start": 0.0, "middle": 0.5, "end": 1.0}[attributes.get("text-anchor", "start")] * text_width(
+    x -= {"start": 0.0, "middle": 0.5, "end": 1.0}[attributes.get("text-anchor", "start")] * measure_text(
         content, size, bold
     )
     pdf.set_font(FONT, "B" if bold else "", size * POINTS_PER_UNIT)

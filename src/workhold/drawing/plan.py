@@ -19,17 +19,27 @@ from workhold.drawing.annotation import (
     Label,
     LabelPlacer,
     Place,
-    around,
-    dimension,
-    dimension_box,
-    joined,
+    compute_dimension_box,
+    draw_dimension,
+    join_labels,
+    make_label_around,
 )
-from workhold.drawing.bench import PEG_FILL, Bench, draw_bench, draw_zero, force_arrow
-from workhold.drawing.carriers import avoid_clamp, block_arrow, labelled
+from workhold.drawing.bench import PEG_FILL, Bench, compute_force_arrow, draw_bench, draw_zero
+from workhold.drawing.carriers import avoid_clamp, choose_labelled, draw_block_arrow
 from workhold.drawing.path_drawn import PlannedPath
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, degrees_text, number, text_width
+from workhold.drawing.scene import (
+    BLACK,
+    GREY,
+    Box,
+    LengthUnit,
+    Scene,
+    View,
+    format_degrees,
+    measure_text,
+    number,
+)
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
-from workhold.fixels.carrier import column_letters
+from workhold.fixels.carrier import make_column_letters
 from workhold.geometry.segment import Arc, Point
 from workhold.model.shown import ShownCarrier, ShownJaws
 from workhold.model.workpiece import Workpiece
@@ -44,9 +54,9 @@ __all__ = [
     "draw_flag",
     "draw_plan",
     "draw_tag",
-    "face_tag",
-    "gripped_tag",
-    "peg_label",
+    "make_face_tag",
+    "make_gripped_face_tag",
+    "make_peg_label",
 ]
 
 LONGEST_ARROW = 62.0
@@ -71,7 +81,7 @@ def draw_labels(
     path: PlannedPath | None,
     lengths: LengthUnit,
 ) -> None:
-    """Labels pegs, touched faces, the part's turn and marked page points, where that hides nothing.
+    """Label pegs, touched faces, the part's turn and marked page points, where that hides nothing.
 
     Pegs are named by their holes, faces by their numbers.
     """
@@ -84,30 +94,32 @@ def draw_labels(
     for (x, y), _ in marks:
         placer.avoid_box(Box(x, y, x, y).grown(MARK_RADIUS))
     if supports is not None:
-        supports.avoided(placer, view)
+        supports.keep_labels_off(placer, view)
     if path is not None:
-        path.avoided(placer, view)
+        path.keep_labels_off(placer, view)
     pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
     gripped = list(bench.gripped)
-    direction, angle_size = -radians(bench.fixture.pose.written_deg) / 2, (text_width(angle, 13) + 4, 16.0)
+    direction, angle_size = -radians(bench.fixture.pose.written_deg) / 2, (measure_text(angle, 13) + 4, 16.0)
     placed = placer.place(
         [
-            *(peg_label(bench, index, view) for index in bench.placed),
-            *(face_tag(bench, face, view) for face in numbers),
-            *(gripped_tag(bench, face, view) for face in gripped),
-            around(center, direction, angle_size, (26, 32, 40, 50, 64), spread(24), turn_cost=4),
+            *(make_peg_label(bench, index, view) for index in bench.placed),
+            *(make_face_tag(bench, face, view) for face in numbers),
+            *(make_gripped_face_tag(bench, face, view) for face in gripped),
+            make_label_around(
+                center, direction, angle_size, (26, 32, 40, 50, 64), list_turns_around(24), turn_cost=4
+            ),
             *(mark_label(point, name) for point, name in marks),
-            *([] if path is None else path.labels(view, lengths)),
-            *([] if supports is None else supports.labels(view)),
+            *([] if path is None else path.make_labels(view, lengths)),
+            *([] if supports is None else supports.make_labels(view)),
         ]
     )
     group, places = scene.group("labels"), iter(placed)
     for index in bench.placed:
-        draw_flag(group, next(places), bench.radius(view, index), pegs[index].hole)
+        draw_flag(group, next(places), bench.get_page_radius(view, index), pegs[index].hole)
     for face in (*numbers, *gripped):
         draw_tag(group, next(places), str(face))
-    group.text(next(places).box.center, angle, 13, "middle", fill=GREY, halo=3)
+    group.add_text(next(places).box.center, angle, 13, "middle", fill=GREY, halo=3)
     for _, name in marks:
         draw_mark(group, next(places), name)
     if path is not None and path.passing is not None:
@@ -117,30 +129,30 @@ def draw_labels(
 
 
 def avoid_drawing(placer: LabelPlacer, bench: Bench, view: View) -> None:
-    """Marks where the drawing is, so that labels keep off."""
-    for outline in bench.outlines(view, 4.0):
+    """Mark where the drawing is, so that labels keep off."""
+    for outline in bench.sample_outlines(view, 4.0):
         placer.avoid_ink(outline, 3.0)
         placer.avoid_walls(outline[::3])
     for index, peg in enumerate(bench.fixture.pegs):
-        (x, y), radius = view((peg.x, peg.y)), bench.radius(view, index)
+        (x, y), radius = view((peg.x, peg.y)), bench.get_page_radius(view, index)
         placer.avoid_box(Box(x - radius, y - radius, x + radius, y + radius))
-        placer.avoid_line(*force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
+        placer.avoid_line(*compute_force_arrow(bench, index, view, LONGEST_ARROW), price=8.0)
     for low, high in (axis for measured in bench.shown.measured for axis in measured.axes):
         placer.avoid_line(view(low), view(high), 0.5)
     for clamp in bench.shown.clamps:
         avoid_clamp(placer, clamp, view)
     for wall in bench.shown.walls:
-        placer.avoid_box(view.box(wall.bar))
+        placer.avoid_box(view.map_box(wall.bar))
     if bench.shown.jaws is not None:
         for bar in (bench.shown.jaws.fixed, bench.shown.jaws.moving):
-            placer.avoid_box(view.box(bar))
+            placer.avoid_box(view.map_box(bar))
     for shown in bench.shown.carriers:
         if len(shown.columns) * len(shown.rows) < MOST_HOLES_AVOIDED:
             placer.avoid_ink([view(hole.center) for hole in shown.holes()], 2.0)
 
 
 def avoid_turn(placer: LabelPlacer, bench: Bench, center: Point) -> None:
-    """Marks where the part's turn is drawn around a page point."""
+    """Mark where the part's turn is drawn around a page point."""
     turn = radians(bench.fixture.pose.written_deg)
     x, y = center
     placer.avoid_line(center, (x + ANGLE_REACH * cos(turn), y - ANGLE_REACH * sin(turn)), 8.0)
@@ -149,33 +161,33 @@ def avoid_turn(placer: LabelPlacer, bench: Bench, center: Point) -> None:
     placer.avoid_ink(np.column_stack([x + ANGLE_RADIUS * np.cos(arc), y - ANGLE_RADIUS * np.sin(arc)]), 3.0)
 
 
-def spread(count: int) -> list[float]:
-    """Turns all around, the small ones first, radians."""
+def list_turns_around(count: int) -> list[float]:
+    """Turn all around, the small ones first, radians."""
     turns = [2 * pi * k / count for k in range(-count // 2 + 1, count // 2 + 1)]
     return sorted(turns, key=lambda turn: (abs(turn), turn))
 
 
-def peg_label(bench: Bench, index: int, view: View) -> Label:
-    """Candidates for the label of a peg: best away from the part, close by; that of a clamp at its hole."""
+def make_peg_label(bench: Bench, index: int, view: View) -> Label:
+    """Return the candidates for the label of a peg: best away from the part, close by; that of a clamp at its hole."""
     peg = bench.fixture.pegs[index]
     nx, ny = bench.contacts[index][1]
-    size = (text_width(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
-    distances = [bench.radius(view, index) + gap for gap in (5, 14, 26, 42, 64, 90)]
+    size = (measure_text(peg.hole, LABEL_SIZE, bold=True) + 12, LABEL_HEIGHT)
+    distances = [bench.get_page_radius(view, index) + gap for gap in (5, 14, 26, 42, 64, 90)]
     at = next((clamp.back for clamp in bench.shown.clamps if clamp.tip == peg), (peg.x, peg.y))
-    return around(view(at), atan2(-ny, nx), size, distances, spread(24))
+    return make_label_around(view(at), atan2(-ny, nx), size, distances, list_turns_around(24))
 
 
 def mark_label(point: Point, name: str) -> Label:
-    size = (text_width(name, TAG_SIZE) + 6, TAG_SIZE + 4)
+    size = (measure_text(name, TAG_SIZE) + 6, TAG_SIZE + 4)
     distances = [MARK_RADIUS + gap for gap in (3, 10, 20, 34, 52, 76, 110)]
-    return around(point, pi / 4, size, distances, spread(24), turn_cost=2)
+    return make_label_around(point, pi / 4, size, distances, list_turns_around(24), turn_cost=2)
 
 
-def face_tag(bench: Bench, face_number: int, view: View) -> Label:
-    """Candidates for the number of a face: inside the part, beside the contacts on it."""
+def make_face_tag(bench: Bench, face_number: int, view: View) -> Label:
+    """Return the candidates for the number of a face: inside the part, beside the contacts on it."""
     index = next(k for k in bench.touching if bench.fixture.pegs[k].face == face_number)
     face = bench.faces[index]
-    size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
+    size = (max(TAG_HEIGHT, measure_text(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
     half = face.half_extent
     near = face.parameter(bench.contacts[index][0])
     labels = []
@@ -183,40 +195,49 @@ def face_tag(bench: Bench, face_number: int, view: View) -> Label:
         nx, ny = face.normal(parameter)
         extra = 4 * abs(parameter - near) / half
         labels.append(
-            around(view(face.at(parameter)), atan2(ny, -nx), size, (7, 14, 24, 40, 60), spread(8), extra)
+            make_label_around(
+                view(face.at(parameter)),
+                atan2(ny, -nx),
+                size,
+                (7, 14, 24, 40, 60),
+                list_turns_around(8),
+                extra,
+            )
         )
-    return joined(labels)
+    return join_labels(labels)
 
 
-def gripped_tag(bench: Bench, face_number: int, view: View) -> Label:
-    """Candidates for the number of a face that a flat jaw touches: inside the part, beside the middle of it."""
+def make_gripped_face_tag(bench: Bench, face_number: int, view: View) -> Label:
+    """Return the candidates for the number of a face that a flat jaw touches: inside the part, beside the
+    middle of it.
+    """
     face = bench.gripped[face_number]
     assert bench.fixture.hold is not None
     is_below = face_number in bench.fixture.hold.fixed.segments
     x = face.center[0] if isinstance(face, Arc) else face.middle[0]
     y, turn = (0.0, -pi / 2) if is_below else (bench.fixture.hold.opening, pi / 2)
-    size = (max(TAG_HEIGHT, text_width(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
-    return around(view((x, y)), turn, size, (9, 16, 26, 42, 60), spread(8))
+    size = (max(TAG_HEIGHT, measure_text(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
+    return make_label_around(view((x, y)), turn, size, (9, 16, 26, 42, 60), list_turns_around(8))
 
 
 def draw_flag(scene: Scene, place: Place, radius: float, name: str) -> None:
-    leader = place.leader(radius)
+    leader = place.compute_leader(radius)
     if dist(*leader) > 2:
-        scene.line(leader, PEG_FILL, 1.4)
-    scene.rectangle(place.box, "#ffffff", PEG_FILL, 1.4, 4)
-    scene.text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
+        scene.add_line(leader, PEG_FILL, 1.4)
+    scene.add_rectangle(place.box, "#ffffff", PEG_FILL, 1.4, 4)
+    scene.add_text(place.box.center, name, LABEL_SIZE, "middle", bold=True)
 
 
 def draw_mark(scene: Scene, place: Place, name: str) -> None:
-    scene.line(place.leader(), BLACK, 0.8)
+    scene.add_line(place.compute_leader(), BLACK, 0.8)
     draw_zero(scene, place.anchor, MARK_RADIUS)
-    scene.text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
+    scene.add_text(place.box.center, name, TAG_SIZE, "middle", halo=2.5)
 
 
 def draw_tag(scene: Scene, place: Place, name: str) -> None:
-    scene.line(place.leader(), BLACK, 0.8)
-    scene.rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
-    scene.text(place.box.center, name, TAG_SIZE, "middle")
+    scene.add_line(place.compute_leader(), BLACK, 0.8)
+    scene.add_rectangle(place.box, "#ffffff", BLACK, 0.9, TAG_HEIGHT / 2)
+    scene.add_text(place.box.center, name, TAG_SIZE, "middle")
 
 
 # Room around plates and part for row numbers, column letters, the dimension and captions, page units.
@@ -247,7 +268,7 @@ def draw_plan(
     supports: PlannedSupports | None = None,
     path: PlannedPath | None = None,
 ) -> None:
-    """Draws a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
+    """Draw a bench with its lettering inside a page box, whose lowest 30 page units stay free of labels.
 
     Parameters
     ----------
@@ -256,7 +277,7 @@ def draw_plan(
     supports : what stands under the part and presses on it, to draw as well.
     path : of the program's tools, to draw as well.
     """
-    frame = view.box(reduce(Box.union, (Box(*point, *point) for point, _ in marks), bench.extent))
+    frame = view.map_box(reduce(Box.union, (Box(*point, *point) for point, _ in marks), bench.extent))
     names = draw_hole_names(scene, bench, view, frame, supports)
     draw_bench(scene, bench, view, longest=LONGEST_ARROW)
     if path is not None:
@@ -266,16 +287,16 @@ def draw_plan(
     names += draw_travel(scene, bench, view, frame, bounds, lengths)
     names += draw_captions(scene, bench, view, frame, bounds)
     center = view(bench.fixture.pose.apply(*workpiece.center))
-    angle_mark(scene, center, bench.fixture.pose.written_deg, ANGLE_RADIUS, ANGLE_REACH)
+    draw_angle_mark(scene, center, bench.fixture.pose.written_deg, ANGLE_RADIUS, ANGLE_REACH)
     marks = [(view(point), name) for point, name in marks]
-    angle = f"θ = {degrees_text(bench.fixture.pose.written_deg, 3)}" if angle is None else angle
+    angle = f"θ = {format_degrees(bench.fixture.pose.written_deg, 3)}" if angle is None else angle
     draw_labels(scene, bench, view, workpiece, bounds, names, marks, angle, supports, path, lengths)
 
 
 def draw_hole_names(
     scene: Scene, bench: Bench, view: View, frame: Box, supports: PlannedSupports | None = None
 ) -> list[Box]:
-    """Writes column letters above and below the plates and row numbers beside them, as on a map's rim.
+    """Write column letters above and below the plates and row numbers beside them, as on a map's rim.
 
     Where another plate stands there are none. Returns the boxes of the names.
     """
@@ -283,31 +304,31 @@ def draw_hole_names(
     if not bench.shown.carriers:
         return []
     for shown in bench.shown.carriers:
-        plate = view.box(shown.plate)
-        also = set() if supports is None else supports.holes_on(shown.carrier.name)
+        plate = view.map_box(shown.plate)
+        also = set() if supports is None else supports.list_holes_on(shown.carrier.name)
         used_rows = shown.used_rows | {row for _, row in also}
         used_columns = shown.used_columns | {column for column, _ in also}
         rows = [(row, view((0.0, y))[1]) for row, y in shown.named_rows]
-        for row, y, used in labelled(rows, used_rows, 15.0):
+        for row, y, used in choose_labelled(rows, used_rows, 15.0):
             rim, inner, way = (
                 (frame.x0, plate.x0, -1) if shown.names_at == "left" else (frame.x1, plate.x1, 1)
             )
-            ruling(group, (rim, y), (inner, y))
+            draw_ruling(group, (rim, y), (inner, y))
             names.append(((rim + 10 * way, y), str(row + 1), used, "end" if way < 0 else "start"))
         columns = [(column, view((x, 0.0))[0]) for column, x in shown.named_columns]
         rims = (("top", frame.y0, plate.y0, -1), ("bottom", frame.y1, plate.y1, 1))
-        for column, x, used in labelled(columns, used_columns, 17.0):
-            anchor = inner_anchor(shown, column, bench.fixture.travel * view.scale)
+        for column, x, used in choose_labelled(columns, used_columns, 17.0):
+            anchor = choose_letter_anchor(shown, column, bench.fixture.travel * view.scale)
             for side, rim, inner, way in rims:
                 if side not in shown.facing:
-                    ruling(group, (x, rim), (x, inner))
-                    names.append(((x, rim + 14 * way), column_letters(column), used, anchor))
+                    draw_ruling(group, (x, rim), (x, inner))
+                    names.append(((x, rim + 14 * way), make_column_letters(column), used, anchor))
     boxes = write_names(group, names)
     return boxes + write_rim_words(group, frame, boxes)
 
 
 def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> list[Box]:
-    """Writes column letters and row numbers; returns their boxes.
+    """Write column letters and row numbers; return their boxes.
 
     Those of pegs (the third entry is True) come first, and move aside where another name stands. The others
     are written where there is room.
@@ -324,25 +345,25 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
         free = [each for each in placed if all(each[3].grown(1.5).overlap(other) == 0 for other in boxes)]
         if free:
             _, place, anchor, box = min(free, key=lambda each: each[0])
-            scene.text(place, name, NAME_SIZE[used], anchor, bold=used, fill=BLACK if used else GREY)
+            scene.add_text(place, name, NAME_SIZE[used], anchor, bold=used, fill=BLACK if used else GREY)
             boxes.append(box)
     return boxes
 
 
 def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
-    """Writes "row" and "column" at the left rim where no name stands; returns the boxes of the words."""
+    """Write "row" and "column" at the left rim where no name stands; return the boxes of the words."""
     boxes = []
     for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
         right = frame.x0 - 5
-        box = Box(right - text_width(word, RIM_WORD), y - RIM_WORD / 2, right, y + RIM_WORD / 2)
+        box = Box(right - measure_text(word, RIM_WORD), y - RIM_WORD / 2, right, y + RIM_WORD / 2)
         if all(box.grown(2.0).overlap(name) == 0 for name in names):
-            scene.text((right, y), word, RIM_WORD, "end", fill=GREY)
+            scene.add_text((right, y), word, RIM_WORD, "end", fill=GREY)
             boxes.append(box)
     return boxes
 
 
-def inner_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
-    """The anchor of a column's letter: beside the column where plates all but meet, else on it."""
+def choose_letter_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
+    """Return the anchor of a column's letter: beside the column where plates all but meet, else on it."""
     if gap >= 20:
         return "middle"
     if "right" in shown.facing and column == shown.columns[-1]:
@@ -350,16 +371,16 @@ def inner_anchor(shown: ShownCarrier, column: int, gap: float) -> str:
     return "start" if "left" in shown.facing and column == shown.columns[0] else "middle"
 
 
-def ruling(scene: Scene, rim: Point, plate: Point) -> None:
-    """Draws a faint line that leads from a name at the rim to a plate that lies further in."""
+def draw_ruling(scene: Scene, rim: Point, plate: Point) -> None:
+    """Draw a faint line that leads from a name at the rim to a plate that lies further in."""
     if abs(rim[0] - plate[0]) + abs(rim[1] - plate[1]) > 12:
-        scene.line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
+        scene.add_line([rim, plate], "#9aa1aa", 0.6, stroke_dasharray="1.5 3")
 
 
 def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
-    """The box of a column letter or row number."""
+    """Return the box of a column letter or row number."""
     size = NAME_SIZE[used]
-    width = text_width(name, size, used)
+    width = measure_text(name, size, used)
     left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width
     return Box(left, at[1] - size / 2, left + width, at[1] + size / 2)
 
@@ -367,7 +388,8 @@ def name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
 def draw_travel(
     scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box, lengths: LengthUnit
 ) -> list[Box]:
-    """Dimensions the lengths to set, above the plates or at their right; returns boxes of words and lines.
+    """Return the dimensions the lengths to set, above the plates or at their right; return boxes of words and
+    lines.
 
     All words are within the bounds. Of two lengths along the same way the second stands farther out.
     """
@@ -381,28 +403,28 @@ def draw_travel(
             for x, y in (view(high) for _, high in measured.axes)
         )
         for x, y in (start, end):
-            group.line(
+            group.add_line(
                 [(frame.x1 + 3, y), (x + 3, y)] if upright else [(x, frame.y0 - 23), (x, y - 3)], BLACK, 0.7
             )
         lines.append((upright, measured.setting, start, end))
     # The words come last: they are read where a line passes below them.
     for upright, setting, start, end in lines:
-        words = f"{setting.sign} = {lengths.words(setting.length)}"
+        words = f"{setting.sign} = {lengths.format_length(setting.length)}"
         # The upper right corner has room for the words of one length only, and no words may end outside the
         # drawing.
         shared = any(one.is_upright != upright for one in bench.shown.measured)
-        room = text_width(words, SETTING_SIZE, bold=True) + PAST_END
+        room = measure_text(words, SETTING_SIZE, bold=True) + PAST_END
         top, bottom = sorted((start[1], end[1]))
         past: Literal["upper", "lower"] | None = "upper"
         if top - room < (frame.y0 if shared else bounds.y0):
             past = "lower" if bottom + room <= bounds.y1 else None
-        box = dimension(group, start, end, words, SETTING_SIZE, bold=True, past=past)
-        boxes += [box, dimension_box(start, end)]
+        box = draw_dimension(group, start, end, words, SETTING_SIZE, bold=True, past=past)
+        boxes += [box, compute_dimension_box(start, end)]
     return boxes
 
 
 def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Box) -> list[Box]:
-    """Names the carriers below them, with an arrow which way one slides to clamp; returns the boxes.
+    """Name the carriers below them, with an arrow which way one slides to clamp; return the boxes.
 
     Where clamps are drawn, they and the one plate need no names.
     """
@@ -419,53 +441,53 @@ def draw_captions(scene: Scene, bench: Bench, view: View, frame: Box, bounds: Bo
         + (f" ({shown.carrier.letter})" if shown.carrier.letter else "")
         for shown in bench.shown.carriers
     ]
-    widths = [text_width(caption, 14) for caption in captions]
+    widths = [measure_text(caption, 14) for caption in captions]
     lefts = []
     for shown, width in zip(bench.shown.carriers, widths, strict=True):
-        plate = view.box(shown.plate)
+        plate = view.map_box(shown.plate)
         lefts.append(max(plate.x1 - 6 - width, bounds.x0) if "right" in shown.facing else plate.x0 + 6)
     for shown, caption, left, width in zip(
-        bench.shown.carriers, captions, side_by_side(lefts, widths, bounds.x1), widths, strict=True
+        bench.shown.carriers, captions, place_side_by_side(lefts, widths, bounds.x1), widths, strict=True
     ):
-        group.text((left, y), caption, 14)
+        group.add_text((left, y), caption, 14)
         box = Box(left, y - 8, left + width, y + 8)
         if shown.clamping is not None:
-            tip = min(left, bounds.x1 - 66 - text_width(verb, 13))
+            tip = min(left, bounds.x1 - 66 - measure_text(verb, 13))
             # An arrow up or down is as high as one to the side is wide.
             drop = 24 if shown.clamping[0] else 46
-            block_arrow(group, (tip + 29, y + drop), shown.clamping)
-            group.text((tip + 66, y + drop), verb, 13)
-            box = box.union(Box(tip, y - 8, tip + 66 + text_width(verb, 13), y + 2 * drop - 10))
+            draw_block_arrow(group, (tip + 29, y + drop), shown.clamping)
+            group.add_text((tip + 66, y + drop), verb, 13)
+            box = box.union(Box(tip, y - 8, tip + 66 + measure_text(verb, 13), y + 2 * drop - 10))
         boxes.append(box)
     return boxes
 
 
 def draw_jaw_captions(scene: Scene, jaws: ShownJaws, view: View) -> list[Box]:
-    """Names two flat jaws and a work stop, with an arrow which way the jaw that moves closes; returns the boxes."""
+    """Name two flat jaws and a work stop, with an arrow which way the jaw that moves closes; return the boxes."""
     boxes = list[Box]()
     for name, bar in (("fixed jaw", jaws.fixed), ("moving jaw", jaws.moving)):
-        page = view.box(bar)
+        page = view.map_box(bar)
         size = min(15.0, 0.6 * page.height)
         middle = (page.x0 + page.x1) / 2, (page.y0 + page.y1) / 2
-        scene.text(middle, name, size, "middle")
-        boxes.append(Box.about(middle, text_width(name, size), size))
-    page = view.box(jaws.moving)
+        scene.add_text(middle, name, size, "middle")
+        boxes.append(Box.about(middle, measure_text(name, size), size))
+    page = view.map_box(jaws.moving)
     tip = page.x1 - 40, (page.y0 + page.y1) / 2
-    block_arrow(scene, tip, (0.0, -1.0), 0.7)
+    draw_block_arrow(scene, tip, (0.0, -1.0), 0.7)
     boxes.append(Box.about(tip, 40, 60))
     if jaws.stop is not None:
-        page = view.box(jaws.stop)
+        page = view.map_box(jaws.stop)
         at = (page.x0 + page.x1) / 2, page.y0 - 10
-        scene.text(at, "work stop", 12, "middle", halo=3)
-        boxes.append(Box.about(at, text_width("work stop", 12), 12))
+        scene.add_text(at, "work stop", 12, "middle", halo=3)
+        boxes.append(Box.about(at, measure_text("work stop", 12), 12))
         boxes.append(page)
     return boxes
 
 
-def side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) -> list[float]:
-    """The left ends of pieces of some widths, moved apart and kept left of ``right``.
-    >>> side_by_side([0.0, 10.0], [20.0, 20.0], 100.0), side_by_side([50.0, 60.0], [30.0, 30.0], 100.0)
-    ([0.0, 36.0], [24.0, 70.0])
+def place_side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) -> list[float]:
+    """Return the left ends of pieces of some widths, moved apart and kept left of ``right``. >>>
+    place_side_by_side([0.0, 10.0], [20.0, 20.0], 100.0), place_side_by_side([50.0, 60.0], [30.0, 30.0],
+    100.0) ([0.0, 36.0], [24.0, 70.0])
     """
     order, placed = sorted(range(len(lefts)), key=lambda k: lefts[k]), list(lefts)
     for before, k in pairwise(order):
@@ -477,14 +499,14 @@ def side_by_side(lefts: Sequence[float], widths: Sequence[float], right: float) 
     return placed
 
 
-def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
-    """Draws the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
+def draw_angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, reach: float) -> None:
+    """Draw the turn from the vise's x axis (a dashed line) to the part's (an arrow) around a page point."""
     x, y = center
     theta = radians(theta_deg)
     mark = scene.group("pose")
-    mark.line([(x, y), (x + reach, y)], GREY, 1.0, stroke_dasharray="5 3")
-    mark.arrow((x, y), (x + reach * cos(theta), y - reach * sin(theta)), GREY, 1.4, 9)
-    mark.circle(center, 2.2, GREY)
+    mark.add_line([(x, y), (x + reach, y)], GREY, 1.0, stroke_dasharray="5 3")
+    mark.add_arrow((x, y), (x + reach * cos(theta), y - reach * sin(theta)), GREY, 1.4, 9)
+    mark.add_circle(center, 2.2, GREY)
     if abs(theta) * radius < 10.0:
         return
     way = copysign(1.0, theta)
@@ -495,6 +517,6 @@ def angle_mark(scene: Scene, center: Point, theta_deg: float, radius: float, rea
         a = end * k / pieces
         end_x, end_y = number(x + radius * cos(a)), number(y - radius * sin(a))
         d += f"A{number(radius)} {number(radius)} 0 0 {0 if way > 0 else 1} {end_x} {end_y}"
-    mark.path(d, GREY, 1.0)
+    mark.add_path(d, GREY, 1.0)
     tip = (x + radius * cos(theta), y - radius * sin(theta))
-    mark.arrow_head(tip, -(theta + way * pi / 2) + way * 3.5 / radius, GREY, 7.5)
+    mark.add_arrow_head(tip, -(theta + way * pi / 2) + way * 3.5 / radius, GREY, 7.5)

@@ -8,10 +8,10 @@ from zlib import crc32
 
 import resvg_py
 
-from workhold.drawing.scene import SVG_NAMESPACE, Scene, font_files, number
+from workhold.drawing.scene import SVG_NAMESPACE, Scene, list_font_files, number
 from workhold.errors import InputError
 
-__all__ = ["render", "stacked", "svg_to_png"]
+__all__ = ["render", "stack_pages", "convert_svg_to_png"]
 
 DEFAULT_WIDTH = 2400
 # Bytes of a PNG's signature and first chunk, and the chunk after them that says which program made it.
@@ -20,8 +20,8 @@ SOFTWARE = b"tEXtSoftware\0workhold"
 MARK = (len(SOFTWARE) - 4).to_bytes(4, "big") + SOFTWARE + crc32(SOFTWARE).to_bytes(4, "big")
 
 
-def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
-    """Renders SVG text to a PNG of a width in pixels, with the bundled fonts only.
+def convert_svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
+    """Render SVG text to a PNG of a width in pixels, with the bundled fonts only.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
             dpi=96,  # else lengths in mm come out as nothing
             background="#ffffff",
             skip_system_fonts=True,
-            font_files=font_files(),
+            font_files=list_font_files(),
             font_family="DejaVu Sans",
             sans_serif_family="DejaVu Sans",
         )
@@ -46,7 +46,7 @@ def svg_to_png(svg: str, width: int = DEFAULT_WIDTH) -> bytes:
 
 
 def render(svg: str, ending: str) -> bytes:
-    """The bytes of a picture file with the ending ".svg" or ".png" (in capitals as well).
+    """Return the bytes of a picture file with the ending ".svg" or ".png" (in capitals as well).
 
     Raises
     ------
@@ -57,21 +57,23 @@ def render(svg: str, ending: str) -> bytes:
         case ".svg":
             return svg.encode("utf-8")
         case ".png":
-            return svg_to_png(svg)
+            return convert_svg_to_png(svg)
     raise InputError(
         f"{ending or 'no ending'} is not a kind of picture workhold writes: end the file in .svg or .png."
     )
 
 
-def stacked(pages: Sequence[str]) -> str:
-    """Pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
+def stack_pages(pages: Sequence[str]) -> str:
+    """Return the pages of SVG of one size as a single picture, one below the other; a single page stays as it is."""
     if len(pages) == 1:
         return pages[0]
     ET.register_namespace("", SVG_NAMESPACE)
     roots = [ET.fromstring(page.encode("utf-8")) for page in pages]
     _, _, width, height = (float(word) for word in roots[0].attrib["viewBox"].split())
-    whole = Scene.page((width, len(pages) * height), roots[0].findtext(f"{{{SVG_NAMESPACE}}}title") or "")
-    text = whole.svg().removesuffix("</svg>\n")
+    whole = Scene.make_page(
+        (width, len(pages) * height), roots[0].findtext(f"{{{SVG_NAMESPACE}}}title") or ""
+    )
+    text = whole.to_svg().removesuffix("</svg>\n")
     for k, root in enumerate(roots):
         root.attrib |= {"width": number(width), "height": number(height), "y": number(k * height)}
         text += ET.tostring(root, encoding="unicode") + "\n"

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from attrs import frozen
 
-from workhold.errors import plain
+from workhold.errors import make_printable
 from workhold.geometry.segment import Box, Point
 from workhold.units import MILLIMETRE, Unit
 
@@ -35,13 +35,13 @@ __all__ = [
     "LengthUnit",
     "Scene",
     "View",
-    "degrees_text",
-    "font_files",
+    "format_degrees",
+    "list_font_files",
     "has_character",
     "number",
-    "shortened",
-    "text_width",
-    "wrapped",
+    "shorten_text",
+    "measure_text",
+    "wrap_text",
 ]
 
 FAMILY = "DejaVu Sans, Verdana, Arial, sans-serif"
@@ -52,23 +52,23 @@ FOLDER = Path(__file__).resolve().parent.parent / "data" / "fonts"
 UNKNOWN_WIDTH = 1.0
 
 
-def degrees_text(turn: float, decimals: int) -> str:
-    """A turn in degrees as it is drawn, with a real minus sign and no negative zero.
+def format_degrees(turn: float, decimals: int) -> str:
+    """Return a turn in degrees as it is drawn, with a real minus sign and no negative zero.
 
-    >>> degrees_text(-0.31, 1), degrees_text(-0.01, 1)
+    >>> format_degrees(-0.31, 1), format_degrees(-0.01, 1)
     ('−0.3°', '0.0°')
     """
     return f"{turn:z.{decimals}f}°".replace("-", "−")
 
 
-def font_files() -> list[str]:
-    """Paths of the bundled fonts, regular and bold."""
+def list_font_files() -> list[str]:
+    """Return the paths of the bundled fonts, regular and bold."""
     return [str(FOLDER / "DejaVuSans.ttf"), str(FOLDER / "DejaVuSans-Bold.ttf")]
 
 
 @cache
-def advance_widths() -> dict[str, dict[str, float]]:
-    """Width in ems of every bundled character, by weight ("regular", "bold")."""
+def load_advance_widths() -> dict[str, dict[str, float]]:
+    """Return the width in ems of every bundled character, by weight ("regular", "bold")."""
     widths: dict[str, dict[str, float]] = json.loads(
         (FOLDER / "advance_widths.json").read_text(encoding="ascii")
     )
@@ -76,64 +76,64 @@ def advance_widths() -> dict[str, dict[str, float]]:
 
 
 @lru_cache(maxsize=1 << 14)
-def text_width(content: str, size: float, bold: bool = False) -> float:
-    """Width of a line of text in page units, for a font size in page units.
+def measure_text(content: str, size: float, bold: bool = False) -> float:
+    """Return the width of a line of text in page units, for a font size in page units.
 
-    >>> text_width("i", 10) < text_width("W", 10) < text_width("W", 10, bold=True)
+    >>> measure_text("i", 10) < measure_text("W", 10) < measure_text("W", 10, bold=True)
     True
     """
-    widths = advance_widths()["bold" if bold else "regular"]
+    widths = load_advance_widths()["bold" if bold else "regular"]
     return size * sum(widths.get(character, UNKNOWN_WIDTH) for character in content)
 
 
 def has_character(character: str) -> bool:
-    """Whether the bundled typeface has a character.
+    """Return whether the bundled typeface has a character.
 
     >>> has_character("Ø"), has_character("樂")
     (True, False)
     """
-    return character in advance_widths()["regular"]
+    return character in load_advance_widths()["regular"]
 
 
-def shortened(content: str, size: float, width: float, bold: bool = False) -> str:
-    """The text itself, or its beginning and an ellipsis when it is wider than ``width`` page units.
+def shorten_text(content: str, size: float, width: float, bold: bool = False) -> str:
+    """Return the text itself, or its beginning and an ellipsis when it is wider than ``width`` page units.
 
-    >>> shortened("a plate", 10, 200), shortened("a very long plate", 10, 50)
+    >>> shorten_text("a plate", 10, 200), shorten_text("a very long plate", 10, 50)
     ('a plate', 'a very l…')
     """
-    if text_width(content, size, bold) <= width:
+    if measure_text(content, size, bold) <= width:
         return content
-    return content[: fitting(content, size, width, bold, "…")].rstrip() + "…"
+    return content[: count_fitting_letters(content, size, width, bold, "…")].rstrip() + "…"
 
 
-def fitting(content: str, size: float, width: float, bold: bool, behind: str = "") -> int:
-    """How many letters of a text, with those behind, are no wider than ``width`` page units.
+def count_fitting_letters(content: str, size: float, width: float, bold: bool, behind: str = "") -> int:
+    """Return how many letters of a text, with those behind, are no wider than ``width`` page units.
 
     It looks at few more letters than fit, however long the text is.
     """
     most = 1
-    while most < len(content) and text_width(content[:most] + behind, size, bold) <= width:
+    while most < len(content) and measure_text(content[:most] + behind, size, bold) <= width:
         most *= 2
     return bisect_right(
         range(1, min(most, len(content)) + 1),
         width,
-        key=lambda count: text_width(content[:count] + behind, size, bold),
+        key=lambda count: measure_text(content[:count] + behind, size, bold),
     )
 
 
-def wrapped(content: str, size: float, width: float, bold: bool = False) -> list[str]:
-    """The text in lines no wider than ``width`` page units, broken at spaces, or inside long words.
+def wrap_text(content: str, size: float, width: float, bold: bool = False) -> list[str]:
+    """Return the text in lines no wider than ``width`` page units, broken at spaces, or inside long words.
 
-    >>> wrapped("a plate with holes", 10, 50)
+    >>> wrap_text("a plate with holes", 10, 50)
     ['a plate', 'with', 'holes']
     """
     lines: list[str] = []
     for word in content.split():
-        if lines and text_width(f"{lines[-1]} {word}", size, bold) <= width:
+        if lines and measure_text(f"{lines[-1]} {word}", size, bold) <= width:
             lines[-1] += f" {word}"
             continue
-        while len(word) > 1 and text_width(word, size, bold) > width:
-            cut = max(1, min(len(word) - 1, fitting(word, size, width, bold)))
+        while len(word) > 1 and measure_text(word, size, bold) > width:
+            cut = max(1, min(len(word) - 1, count_fitting_letters(word, size, width, bold)))
             lines.append(word[:cut])
             word = word[cut:]
         lines.append(word)
@@ -156,7 +156,7 @@ Attributes = dict[str, str]
 
 
 def number(value: float) -> str:
-    """A page coordinate with at most three decimals, always written the same way.
+    """Return a page coordinate with at most three decimals, always written the same way.
 
     >>> number(2.0), number(-0.0001), number(1.23456)
     ('2', '0', '1.235')
@@ -165,10 +165,10 @@ def number(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def decimals_for(length: float) -> int:
-    """Decimals for dimensions in mm where ``length`` mm is typical: three, more for tiny parts.
+def choose_decimals(length: float) -> int:
+    """Return the decimals for dimensions in mm where ``length`` mm is typical: three, more for tiny parts.
 
-    >>> decimals_for(10.0), decimals_for(0.05)
+    >>> choose_decimals(10.0), choose_decimals(0.05)
     (3, 5)
     """
     return max(3, 3 - int(log10(length) // 1)) if length < 1 else 3
@@ -183,18 +183,18 @@ class View:
     top: float
 
     @classmethod
-    def fitting(cls, model: Box, page: Box, scale: float | None = None) -> View:
-        """Centres a model box in a page box, as large as fits or at a scale in page units per mm."""
+    def fit_box(cls, model: Box, page: Box, scale: float | None = None) -> View:
+        """Centre a model box in a page box, as large as fits or at a scale in page units per mm."""
         if scale is None:
             scale = min(page.width / model.width, page.height / model.height)
         (mx, my), (px, py) = model.center, page.center
         return cls(scale, px - scale * mx, py + scale * my)
 
     def __call__(self, point: Point) -> Point:
-        """A model point on the page."""
+        """Return where a point of the model, in mm, is on the page."""
         return self.left + self.scale * point[0], self.top - self.scale * point[1]
 
-    def box(self, model: Box) -> Box:
+    def map_box(self, model: Box) -> Box:
         (x0, y1), (x1, y0) = self((model.x0, model.y0)), self((model.x1, model.y1))
         return Box(x0, y0, x1, y1)
 
@@ -216,8 +216,8 @@ class Scene:
         self.element = element
 
     @classmethod
-    def page(cls, size: tuple[float, float], title: str) -> Scene:
-        """An empty white page; ``title`` is for screen readers and window titles."""
+    def make_page(cls, size: tuple[float, float], title: str) -> Scene:
+        """Return an empty white page; ``title`` is for screen readers and window titles."""
         width, height = size
         root = ET.Element(
             "svg",
@@ -231,13 +231,13 @@ class Scene:
                 "stroke-linejoin": "round",
             },
         )
-        ET.SubElement(root, "title").text = plain(title)
+        ET.SubElement(root, "title").text = make_printable(title)
         scene = cls(root)
         scene.add("rect", {"width": number(width), "height": number(height), "fill": "#ffffff"})
         return scene
 
-    def svg(self) -> str:
-        """The page as SVG text, marked as workhold's own, see ``cli.outputs``."""
+    def to_svg(self) -> str:
+        """Return the page as SVG text, marked as workhold's own, see ``cli.outputs``."""
         ET.indent(self.element, " ")
         return (
             '<?xml version="1.0" encoding="UTF-8"?>\n<!-- workhold -->\n'
@@ -248,37 +248,39 @@ class Scene:
     def add(
         self, tag: str, attributes: Attributes, stroke: str = "none", width: float = 1.0, **more: str
     ) -> ET.Element:
-        """Adds any element; further attributes are named with ``_`` for ``-``."""
+        """Add any element; further attributes are named with ``_`` for ``-``."""
         if stroke != "none":
             attributes |= {"stroke": stroke, "stroke-width": number(width)}
         attributes |= {key.replace("_", "-"): value for key, value in more.items()}
         return ET.SubElement(self.element, tag, attributes)
 
     def group(self, name: str, view: View | None = None, **attributes: str) -> Scene:
-        """Adds a group of the class ``name``; with a view, ``data-model-to-page`` holds the map from mm."""
+        """Add a group of the class ``name``; with a view, ``data-model-to-page`` holds the map from mm."""
         element = self.add("g", {"class": name}, "none", 1.0, **attributes)
         if view is not None:
             element.set("data-model-to-page", view.matrix)
         return Scene(element)
 
-    def path(
+    def add_path(
         self, d: str, stroke: str = "none", width: float = 1.0, fill: str = "none", **more: str
     ) -> ET.Element:
         return self.add("path", {"d": d, "fill": fill}, stroke, width, **more)
 
-    def line(
+    def add_line(
         self, points: Sequence[Point], stroke: str = BLACK, width: float = 1.0, **more: str
     ) -> ET.Element:
-        """Adds an open polyline."""
-        return self.path("M" + "L".join(f"{number(x)} {number(y)}" for x, y in points), stroke, width, **more)
+        """Add an open polyline."""
+        return self.add_path(
+            "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points), stroke, width, **more
+        )
 
-    def polygon(
+    def add_polygon(
         self, points: Sequence[Point], fill: str, stroke: str = "none", width: float = 1.0
     ) -> ET.Element:
         d = "M" + "L".join(f"{number(x)} {number(y)}" for x, y in points) + "Z"
-        return self.path(d, stroke, width, fill)
+        return self.add_path(d, stroke, width, fill)
 
-    def rectangle(
+    def add_rectangle(
         self, box: Box, fill: str, stroke: str = "none", width: float = 1.0, round_by: float = 0.0
     ) -> ET.Element:
         attributes = {
@@ -292,7 +294,7 @@ class Scene:
             attributes["rx"] = number(round_by)
         return self.add("rect", attributes, stroke, width)
 
-    def circle(
+    def add_circle(
         self,
         center: Point,
         radius: float,
@@ -304,7 +306,7 @@ class Scene:
         attributes = {"cx": number(center[0]), "cy": number(center[1]), "r": number(radius), "fill": fill}
         return self.add("circle", attributes, stroke, width, **more)
 
-    def text(
+    def add_text(
         self,
         at: Point,
         content: str,
@@ -316,7 +318,7 @@ class Scene:
         middle: bool = True,
         turned: float = 0.0,
     ) -> ET.Element:
-        """Adds a line of text.
+        """Add a line of text.
 
         Parameters
         ----------
@@ -337,27 +339,27 @@ class Scene:
         if turned:
             attributes["transform"] = f"rotate({number(-turned)} {number(at[0])} {number(at[1])})"
         element = self.add("text", attributes)
-        element.text = plain(content)
+        element.text = make_printable(content)
         return element
 
-    def arrow(
+    def add_arrow(
         self, tail: Point, tip: Point, stroke: str = BLACK, width: float = 1.0, head: float = 8.0
     ) -> None:
-        """Adds an arrow; ``head`` is the length of its head."""
+        """Add an arrow; ``head`` is the length of its head."""
         dx, dy = tip[0] - tail[0], tip[1] - tail[1]
         length = hypot(dx, dy)
         head = min(head, length) if length > 0 else head
         if length > 0:
             neck = (tip[0] - 0.9 * head * dx / length, tip[1] - 0.9 * head * dy / length)
-            self.line([tail, neck], stroke, width)
-        self.arrow_head(tip, atan2(dy, dx), stroke, head)
+            self.add_line([tail, neck], stroke, width)
+        self.add_arrow_head(tip, atan2(dy, dx), stroke, head)
 
-    def arrow_head(self, tip: Point, angle: float, fill: str, length: float) -> None:
-        """Adds the head of an arrow that points along ``angle`` (radians on the page, y down)."""
+    def add_arrow_head(self, tip: Point, angle: float, fill: str, length: float) -> None:
+        """Add the head of an arrow that points along ``angle`` (radians on the page, y down)."""
         c, s = cos(angle), sin(angle)
         half = 0.34 * length
         back = (tip[0] - length * c, tip[1] - length * s)
-        self.polygon(
+        self.add_polygon(
             [tip, (back[0] - half * s, back[1] + half * c), (back[0] + half * s, back[1] - half * c)], fill
         )
 
@@ -369,8 +371,8 @@ class LengthUnit:
     Examples
     --------
     >>> from workhold.units import INCH
-    >>> mm, inch = LengthUnit.mm(), LengthUnit.suiting(INCH, 10.0)
-    >>> mm.words(24.125), inch.words(-25.4), mm.number(-0.0)
+    >>> mm, inch = LengthUnit.in_mm(), LengthUnit.from_typical_length(INCH, 10.0)
+    >>> mm.format_length(24.125), inch.format_length(-25.4), mm.number(-0.0)
     ('24.125 mm', '−1.0000 in', '0.000')
     """
 
@@ -378,13 +380,13 @@ class LengthUnit:
     decimals: int
 
     @classmethod
-    def mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
+    def in_mm(cls, decimals: int = MILLIMETRE.decimals) -> LengthUnit:
         return cls(MILLIMETRE, decimals)
 
     @classmethod
-    def suiting(cls, unit: Unit, length: float) -> LengthUnit:
-        """The unit with decimals for a picture in which ``length`` mm is typical, such as the pitch."""
-        return cls(unit, unit.decimals + decimals_for(length) - decimals_for(1.0))
+    def from_typical_length(cls, unit: Unit, length: float) -> LengthUnit:
+        """Return the unit with decimals for a picture in which ``length`` mm is typical, such as the pitch."""
+        return cls(unit, unit.decimals + choose_decimals(length) - choose_decimals(1.0))
 
     @property
     def sign(self) -> str:
@@ -392,21 +394,21 @@ class LengthUnit:
         return self.unit.abbreviation
 
     def number(self, length: float) -> str:
-        """A length in mm as a number of this unit, with a real minus sign and no negative zero."""
+        """Return a length in mm as a number of this unit, with a real minus sign and no negative zero."""
         return self.unit.number(length, self.decimals).replace("-", "−")
 
-    def words(self, length: float) -> str:
-        """A length in mm with the sign of the unit."""
+    def format_length(self, length: float) -> str:
+        """Return a length in mm with the sign of the unit."""
         return f"{self.number(length)} {self.sign}"
 
-    def short(self, length: float, digits: int = 6) -> str:
-        """A length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
+    def format_short(self, length: float, digits: int = 6) -> str:
+        """Return a length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
 
-        >>> LengthUnit.mm().short(12.7), LengthUnit.mm().short(10.0)
+        >>> LengthUnit.in_mm().format_short(12.7), LengthUnit.in_mm().format_short(10.0)
         ('12.7 mm', '10 mm')
         """
-        return f"{self.short_number(length, digits)} {self.sign}"
+        return f"{self.format_short_number(length, digits)} {self.sign}"
 
-    def short_number(self, length: float, digits: int = 6) -> str:
-        """A length in mm as :meth:`short` writes it, without the sign of the unit."""
+    def format_short_number(self, length: float, digits: int = 6) -> str:
+        """Return a length in mm as :meth:`format_short` writes it, without the sign of the unit."""
         return f"{length / self.unit.millimetres:.{digits}g}"

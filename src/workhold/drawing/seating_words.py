@@ -17,7 +17,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import Gauge
 from workhold.seating.part_features import Silhouette
 
-__all__ = ["SeatingSentences", "down", "sentence"]
+__all__ = ["SeatingSentences", "round_down_in_words", "capitalize_sentence"]
 
 # A larger turn has no bound, in degrees.
 ANY_TURN = 180.0
@@ -26,11 +26,11 @@ CLAMP_STOPS, JAWS_STOP = "the clamp goes as far as it can", "the jaws meet their
 STOPPED: Mapping[Measure, str] = {"opening": JAWS_STOP, "stroke": CLAMP_STOPS, "tip": CLAMP_STOPS}
 
 
-def down(value: float, digits: int = 2) -> str:
-    """An upper bound in words, rounded down to ``digits`` significant digits.
+def round_down_in_words(value: float, digits: int = 2) -> str:
+    """Return an upper bound in words, rounded down to ``digits`` significant digits.
 
-    >>> down(0.4475), down(12.99), down(123.4), down(0.02999), down(0.0)
-    ('0.44', '12', '120', '0.029', '0')
+    >>> [round_down_in_words(value) for value in (0.4475, 12.99, 123.4, 0.02999, 0.0)]
+    ['0.44', '12', '120', '0.029', '0']
     """
     if value <= 0.0:
         return "0"
@@ -64,20 +64,20 @@ class SeatingSentences:
         """What is read, such as S."""
         return self.gauge.setting.sign
 
-    def reading(self, seat: Seat) -> float:
-        """What is read in a seat, in mm."""
+    def compute_reading(self, seat: Seat) -> float:
+        """Return what is read in a seat, in mm."""
         return self.gauge.at(seat.jaw_separation)
 
-    def reads(self, length: float) -> str:
-        return f"{self.sign} = {self.lengths.words(length)}"
+    def format_reading(self, length: float) -> str:
+        return f"{self.sign} = {self.lengths.format_length(length)}"
 
     def bound(self, length: float) -> str:
-        """A length in mm that must not be passed, in words."""
+        """Return a length in mm that must not be passed, in words."""
         unit = self.lengths.unit
-        return f"{down(length / unit.millimetres)} {unit.abbreviation}"
+        return f"{round_down_in_words(length / unit.millimetres)} {unit.abbreviation}"
 
-    def short_of(self, opened: float) -> float:
-        """The reading when the jaws are opened by a length in mm, rounded so that they open no further."""
+    def format_reading_short_of(self, opened: float) -> float:
+        """Return the reading when the jaws are opened by a length in mm, rounded so that they open no further."""
         step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
         reading = self.gauge.at(self.own.jaw_separation + self.seating.clamping * opened) / step
         return (floor(reading) if self.gauge.grows else ceil(reading)) * step
@@ -99,8 +99,8 @@ class SeatingSentences:
         """The number of seats besides its own in which the part covers its place."""
         return sum(seat.same_place and not seat.is_own for seat in self.seating.seats)
 
-    def within(self, workpiece: Workpiece) -> tuple[float, float] | None:
-        """The shift in mm and turn in degrees by which the part may lie off and is sure to come home.
+    def compute_safe_start(self, workpiece: Workpiece) -> tuple[float, float] | None:
+        """Return the shift in mm and turn in degrees by which the part may lie off and is sure to come home.
 
         It is None where nothing bounds them. Half of ``placing`` is for the shift, half for 2 R sin(turn /
         2), R the farthest point of the part from its middle.
@@ -111,15 +111,15 @@ class SeatingSentences:
         arm = Silhouette.of(workpiece).arm
         return half, min(2.0 * degrees(asin(min(half / (2.0 * arm), 1.0))), ANY_TURN)
 
-    def difference(self, seat: Seat) -> str:
+    def describe_difference(self, seat: Seat) -> str:
         if abs(seat.difference) < 0.5 * 10.0**-self.lengths.decimals * self.lengths.unit.millimetres:
             return "the same"
-        more = self.reading(seat) > self.reading(self.own)
-        return f"{self.lengths.words(abs(seat.difference))} {'more' if more else 'less'}"
+        more = self.compute_reading(seat) > self.compute_reading(self.own)
+        return f"{self.lengths.format_length(abs(seat.difference))} {'more' if more else 'less'}"
 
-    def steps(self, workpiece: Workpiece) -> list[str]:
-        """What to do and what to read, one step each."""
-        seating, right = self.seating, self.reads(self.reading(self.own))
+    def list_steps(self, workpiece: Workpiece) -> list[str]:
+        """Return what to do and what to read, one step each."""
+        seating, right = self.seating, self.format_reading(self.compute_reading(self.own))
         ways = self.gauge.ways
         most, more = ("at most", "more") if self.gauge.grows else ("at least", "less")
         capture, room = seating.capture_opening, seating.drop_room
@@ -132,14 +132,15 @@ class SeatingSentences:
             steps = [f"{ways.open} as far as possible: the part cannot get to another place on the way."]
         else:
             steps = [
-                f"{ways.open} to {self.reads(self.short_of(capture))} {most}, {self.bound(capture)} from "
+                f"{ways.open} to {self.format_reading(self.format_reading_short_of(capture))} {most}, "
+                f"{self.bound(capture)} from "
                 f"where {ways.hold} the part. That leaves about {self.bound(room)} of room at every peg."
             ]
-        within = self.within(workpiece)
+        within = self.compute_safe_start(workpiece)
         if within is not None:
             shift, turn = within
             steps.append(
-                f"Put the part in within {self.bound(shift)} and {down(turn)}° of its place, as far as "
+                f"Put the part in within {self.bound(shift)} and {round_down_in_words(turn)}° of its place, as far as "
                 "the pegs let it: from there it settles in its place."
             )
         steps.append(
@@ -154,8 +155,8 @@ class SeatingSentences:
             )
         return steps
 
-    def wrong_words(self) -> list[str]:
-        """Sentences on how many wrong seats there are, and on what no reading shows."""
+    def describe_wrong_seats(self) -> list[str]:
+        """Return the sentences on how many wrong seats there are, and on what no reading shows."""
         seating, reach = self.seating, ""
         if seating.opening is not None:
             reach = f", {self.gauge.ways.done.lower()} by no more than {self.bound(seating.opening)},"
@@ -173,11 +174,11 @@ class SeatingSentences:
                 f"In {self.alike} more places it lies turned round or upside down and covers the right "
                 "place all the same. No reading shows that: mark the part."
             )
-        return [*words, *map(sentence, seating.unsettled)]
+        return [*words, *map(capitalize_sentence, seating.unsettled)]
 
-    def ended(self, ending: str, seat: Seat | None, travelled: float) -> str:
-        """A sentence on how a closing ended, see ``seating.closing_simulation.ENDINGS``, with the reading."""
-        read, stop = self.reads(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
+    def describe_ending(self, ending: str, seat: Seat | None, travelled: float) -> str:
+        """Return a sentence on how a closing ended, see ``seating.closing_simulation.ENDINGS``, with the reading."""
+        read, stop = self.format_reading(self.gauge.at(travelled)), STOPPED[self.gauge.carrier.measure]
         if seat is not None and ending == "right":
             return f"The part is in its place: {read}."
         if seat is not None and ending == "same place":
@@ -188,7 +189,7 @@ class SeatingSentences:
         if seat is not None:
             unsure = {"loose": " that does not locate it", "unsettled": " that is not settled"}
             kind = unsure.get(seat.kind, "")
-            off = self.difference(seat)
+            off = self.describe_difference(seat)
             read_as = (
                 "the same as in the right place" if off == "the same" else f"{off} than in the right place"
             )
@@ -199,8 +200,8 @@ class SeatingSentences:
             "elsewhere": f"The part comes to rest, but a nudge moves it on: {read}.",
         }.get(ending, f"The motion could not be followed to its end; the last reading is {read}.")
 
-    def cautions(self) -> list[tuple[str, str]]:
-        """The cautions: of each its kind, "capture" or "reading", and a sentence."""
+    def list_cautions(self) -> list[tuple[str, str]]:
+        """Return the cautions: of each its kind, "capture" or "reading", and a sentence."""
         seating, found = self.seating, list[tuple[str, str]]()
         if seating.is_untold:
             words = "It is not known how far you may open: hold the part in its place while you close."
@@ -213,13 +214,13 @@ class SeatingSentences:
             )
             found.append(("capture", words))
         if self.wrong and abs(self.wrong[0].difference) < CLOSE_READING:
-            off = self.difference(self.wrong[0])
+            off = self.describe_difference(self.wrong[0])
             off = "no different" if off == "the same" else f"only {off}"
             words = f"In a wrong place the reading is {off}: compare the part with the picture."
             found.append(("reading", words))
         return found
 
 
-def sentence(words: str) -> str:
-    """Words that begin with a capital letter."""
+def capitalize_sentence(words: str) -> str:
+    """Return the words that begin with a capital letter."""
     return f"{words[:1].upper()}{words[1:]}"

@@ -11,12 +11,12 @@ from functools import reduce
 
 from attrs import frozen
 
-from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, outline_path
-from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, cells_of, draw_heading
+from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, make_outline_path
+from workhold.drawing.fixture_pictures import MOST_THUMBNAILS, arrange_cells, draw_heading
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, text_width
+from workhold.drawing.scene import BLACK, GREY, LANDSCAPE, Box, Scene, View, measure_text
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, heading
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, write_heading
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point, Segment
 from workhold.model.fixture import Fixture
@@ -44,7 +44,7 @@ def draw_seats(
     title: str = "Fixture",
     unit: Unit = MILLIMETRE,
 ) -> str:
-    """Draws up to twelve seats of a fixture's pegs on an A4 sheet to one scale, with their readings.
+    """Draw up to twelve seats of a fixture's pegs on an A4 sheet to one scale, with their readings.
 
     Parameters
     ----------
@@ -56,16 +56,16 @@ def draw_seats(
     str
         SVG text.
     """
-    placed = [Placed.of(seat, fixture, workpiece, toolkit) for seat in seats[:MOST_THUMBNAILS]]
-    scene = Scene.page(LANDSCAPE, f"{workpiece.name}: seats")
+    placed = [Placed.from_seat(seat, fixture, workpiece, toolkit) for seat in seats[:MOST_THUMBNAILS]]
+    scene = Scene.make_page(LANDSCAPE, f"{workpiece.name}: seats")
     more = len(seats) - len(placed)
     words = "all to the same scale" if not more else f"{more} more not drawn; all to the same scale"
     draw_heading(scene, f"{workpiece.name}: {title} and its seats", words)
     for number, (one, (cell, view)) in enumerate(
-        zip(placed, cells_of([one.extent for one in placed]), strict=True), 1
+        zip(placed, arrange_cells([one.extent for one in placed]), strict=True), 1
     ):
         draw_seat(scene.group("seat"), one, number, cell, view, unit)
-    return scene.svg()
+    return scene.to_svg()
 
 
 @frozen(eq=False)
@@ -92,14 +92,14 @@ class Placed:
     touching: str
 
     @classmethod
-    def of(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
+    def from_seat(cls, seat: Seat, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Placed:
         part = workpiece.turned_over if seat.mirrored else workpiece
         lying = part.placed(seat.pose)
         touching, gauge = {contact.peg for contact in seat.contacts}, Gauge(fixture, toolkit)
         pegs = [
-            ((peg.x, peg.y), toolkit.carrier(peg.carrier).peg_radius, k in touching)
+            ((peg.x, peg.y), toolkit.find_carrier(peg.carrier).peg_radius, k in touching)
             for k, peg in enumerate(gauge.pegs(seat.jaw_separation))
-            if toolkit.carrier(peg.carrier).contact.is_placed
+            if toolkit.find_carrier(peg.carrier).contact.is_placed
         ]
         reading = gauge.at(seat.jaw_separation), gauge.setting.length
         bounds, walls = Box(*lying.bounds), len(toolkit.ends_on_walls)
@@ -110,17 +110,17 @@ class Placed:
 
 
 def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) -> None:
-    """Draws the part as it lies and the pegs, those that touch filled.
+    """Draw the part as it lies and the pegs, those that touch filled.
 
     Lines are ``weight`` page units wide.
     """
     for _ in range(placed.walls):
         x0, x1 = placed.extent.x0, placed.extent.x1
-        scene.polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
+        scene.add_polygon([view(at) for at in ((x0, 0.0), (x1, 0.0), (x1, -WALL), (x0, -WALL))], WALL_FILL)
     fill = OVER_FILL if placed.seat.mirrored else PART_FILL
-    scene.path(outline_path(placed.loops, view), BLACK, weight, fill, fill_rule="evenodd")
+    scene.add_path(make_outline_path(placed.loops, view), BLACK, weight, fill, fill_rule="evenodd")
     for place, radius, touches in placed.pegs:
-        scene.circle(
+        scene.add_circle(
             view(place), max(radius * view.scale, 2.0), PEG_FILL if touches else "#ffffff", PEG_FILL, weight
         )
 
@@ -128,18 +128,24 @@ def draw_lying(scene: Scene, placed: Placed, view: View, weight: float = 1.2) ->
 def draw_seat(scene: Scene, placed: Placed, number: int, cell: Box, view: View, unit: Unit) -> None:
     seat, (reading, own) = placed.seat, placed.reading
     colour = RIGHT if seat.is_own else ALIKE if seat.same_place else PEG_FILL
-    scene.rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
+    scene.add_rectangle(cell, "#ffffff", colour, 2.0 if seat.is_own else 1.0, 5)
     draw_lying(scene, placed, view)
     side = ", turned over" if seat.mirrored else ""
     words = "right" if seat.is_own else "same place" if seat.same_place else "wrong"
-    scene.text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)
-    scene.text((cell.x1 - 10, cell.y1 - 30), f"reads {unit.text(reading)}", 13, "end", fill=ARROW)
+    scene.add_text((cell.x0 + 10, cell.y1 - 30), f"{number}  {words}", 15, bold=True, fill=colour)
+    scene.add_text(
+        (cell.x1 - 10, cell.y1 - 30), f"reads {unit.format_length(reading)}", 13, "end", fill=ARROW
+    )
     kind = seat.kind if seat.kind != "fixture" else placed.touching
-    scene.text((cell.x0 + 10, cell.y1 - 12), f"{kind}{side}", 12, fill=GREY)
+    scene.add_text((cell.x0 + 10, cell.y1 - 12), f"{kind}{side}", 12, fill=GREY)
     if not seat.is_own:
         more = "more" if reading >= own else "less"
-        scene.text(
-            (cell.x1 - 10, cell.y1 - 12), f"{unit.text(abs(reading - own))} {more}", 12, "end", fill=GREY
+        scene.add_text(
+            (cell.x1 - 10, cell.y1 - 12),
+            f"{unit.format_length(abs(reading - own))} {more}",
+            12,
+            "end",
+            fill=GREY,
         )
 
 
@@ -152,31 +158,31 @@ LINE, READING, SMALL = 12.5, 11.0, 9.5
 
 
 def write_seating(column: TextColumn, sheet: Sheet) -> None:
-    """Writes how far to open, where to put the part and what to read; or how to put it into two clamps."""
-    heading(column, "Does the part end up there?")
+    """Write how far to open, where to put the part and what to read; or how to put it into two clamps."""
+    write_heading(column, "Does the part end up there?")
     put_in, steps = sheet.details.by_hand, list[str]()
     if sheet.seating is not None:
-        steps = sheet.seating.steps(sheet.workpiece)
+        steps = sheet.seating.list_steps(sheet.workpiece)
     elif put_in is not None:
-        column.paragraph(WHY, BODY)
+        column.write_paragraph(WHY, BODY)
         # The order of tightening has a block of its own.
-        steps = put_in.steps(sheet.lengths.words, with_order=False)
+        steps = put_in.steps(sheet.lengths.format_length, with_order=False)
     else:
-        column.paragraph(sheet.details.not_seated, BODY)
+        column.write_paragraph(sheet.details.not_seated, BODY)
     for number, step in enumerate(steps, 1):
-        column.item(f"{number}.", step, BODY)
+        column.write_item(f"{number}.", step, BODY)
 
 
 def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
-    """Draws the right seat and the wrong ones that read most like it, each with its reading."""
+    """Draw the right seat and the wrong ones that read most like it, each with its reading."""
     words = sheet.seating
     assert words is not None
-    heading(column, "What it looks like")
-    for sentence in words.wrong_words():
-        column.paragraph(sentence, BODY)
+    write_heading(column, "What it looks like")
+    for sentence in words.describe_wrong_seats():
+        column.write_paragraph(sentence, BODY)
     shown = [words.own, *words.wrong[: MOST - 1]]
     width = (column.width - (ACROSS - 1) * GAP) / ACROSS
-    captions = [caption(words, seat) for seat in shown]
+    captions = [write_caption(words, seat) for seat in shown]
     below = LINE * max(map(len, captions)) + GAP
     cells = []
     for k in range(len(shown)):
@@ -185,30 +191,33 @@ def write_wrong_seats(column: TextColumn, sheet: Sheet) -> None:
             column.y + 6 + k // ACROSS * (TALL * width + below + GAP),
         )
         cells.append(Box(x, y, x + width, y + TALL * width))
-    placed = [Placed.of(seat, sheet.fixture, sheet.workpiece, sheet.toolkit) for seat in shown]
+    placed = [Placed.from_seat(seat, sheet.fixture, sheet.workpiece, sheet.toolkit) for seat in shown]
     rooms = [cell.grown(-5.0) for cell in cells]
-    scale = min(View.fitting(one.extent, room).scale for one, room in zip(placed, rooms, strict=True))
+    scale = min(View.fit_box(one.extent, room).scale for one, room in zip(placed, rooms, strict=True))
     group = column.scene.group("seats")
     for one, lines, cell, room in zip(placed, captions, cells, rooms, strict=True):
         seat = one.seat
-        group.rectangle(cell, "#ffffff", RIGHT if seat.is_own else GREY, 2.0 if seat.is_own else 0.8, 4)
-        draw_lying(group, one, View.fitting(one.extent, room, scale), 0.9)
+        group.add_rectangle(cell, "#ffffff", RIGHT if seat.is_own else GREY, 2.0 if seat.is_own else 0.8, 4)
+        draw_lying(group, one, View.fit_box(one.extent, room, scale), 0.9)
         for k, line in enumerate(lines):
             size, colour = (READING if k == 0 else SMALL), RIGHT if seat.is_own and k == 1 else BLACK
-            size = min(size, size * (width - 2) / text_width(line, size, bold=k == 0))
-            group.text(
+            size = min(size, size * (width - 2) / measure_text(line, size, bold=k == 0))
+            group.add_text(
                 (cell.x0 + 2, cell.y1 + 11 + LINE * k), line, size, bold=k == 0, fill=colour, middle=False
             )
     column.y = cells[-1].y1 + below
     rest = len(words.wrong) - (len(shown) - 1)
     if rest:
         which = "one more is" if rest == 1 else f"{rest} more are"
-        column.paragraph(f"The pictures show the nearest readings; {which} off by more.", NOTE)
+        column.write_paragraph(f"The pictures show the nearest readings; {which} off by more.", NOTE)
 
 
-def caption(words: SeatingSentences, seat: Seat) -> list[str]:
-    """The lines below the picture of a seat: the reading, how it differs, and what is wrong."""
+def write_caption(words: SeatingSentences, seat: Seat) -> list[str]:
+    """Return the lines below the picture of a seat: the reading, how it differs, and what is wrong."""
     notes = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
     notes += ["not settled"] * (seat.kind == "unsettled")
-    lines = [words.reads(words.reading(seat)), "right" if seat.is_own else words.difference(seat)]
+    lines = [
+        words.format_reading(words.compute_reading(seat)),
+        "right" if seat.is_own else words.describe_difference(seat),
+    ]
     return [*lines, ", ".join(notes)] if notes else lines

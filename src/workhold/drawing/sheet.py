@@ -23,24 +23,33 @@ from typing import Any
 from attrs import evolve, frozen
 
 from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, bench_of
-from workhold.drawing.carriers import most_holes
+from workhold.drawing.bench import Bench, make_bench
+from workhold.drawing.carriers import limit_holes_drawn
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
-from workhold.drawing.scene import BLACK, UNITS_PER_MM, Box, LengthUnit, Scene, View, shortened, text_width
-from workhold.drawing.sheet_blocks import blocks_of
+from workhold.drawing.scene import (
+    BLACK,
+    UNITS_PER_MM,
+    Box,
+    LengthUnit,
+    Scene,
+    View,
+    measure_text,
+    shorten_text,
+)
+from workhold.drawing.sheet_blocks import make_blocks
 from workhold.drawing.sheet_facts import (
     PAPERS,
     Caution,
     SheetDetails,
-    cautions_of,
-    edge_distances,
-    result_details,
+    collect_sheet_details,
+    list_cautions,
+    measure_edge_distances,
 )
-from workhold.drawing.sheet_writing import Block, Sheet, height_of, heights_of
+from workhold.drawing.sheet_writing import Block, Sheet, find_sheet_heights, measure_block_height
 from workhold.drawing.side_drawing import SideFigure
-from workhold.drawing.side_view import side_view
+from workhold.drawing.side_view import choose_side_view
 from workhold.drawing.supports_drawn import PlannedSupports
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
@@ -49,7 +58,7 @@ from workhold.model.result import Result
 from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["draw_sheet", "result_sheet", "standard_scale"]
+__all__ = ["draw_sheet", "draw_setup_sheet", "choose_standard_scale"]
 
 PAPER_NAMES = {"a4": "A4", "letter": "Letter"}
 # A cell for the part's name narrower than this, in page units, is left out of the foot.
@@ -61,24 +70,24 @@ NEAR = 2
 def draw_sheet(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
 ) -> tuple[str, ...]:
-    """Draws the setup sheet of a fixture, lying or upright, whichever shows the part largest.
+    """Draw the setup sheet of a fixture, lying or upright, whichever shows the part largest.
 
     The groups of class ``part`` and ``pegs`` carry the map from the vise frame (mm) to the page in their
     attribute ``data-model-to-page``, written as an SVG matrix. On paper its scale is a standard one. Returns
     the SVG text of every page, each of the paper's size.
     """
-    bench = bench_of(fixture, workpiece, toolkit)
+    bench = make_bench(fixture, workpiece, toolkit)
     details = details if details.zero else evolve(details, zero=part_zero(workpiece))
-    lengths = LengthUnit.suiting(details.unit, bench.shown.pitch)
+    lengths = LengthUnit.from_typical_length(details.unit, bench.shown.pitch)
     if fixture.hold is not None:
         distances, heights = list[float](), None
         cautions = [Caution(kind, words) for kind, words in hold_cautions(fixture.hold)]
     else:
-        distances = edge_distances(fixture, workpiece, toolkit)
-        cautions = cautions_of(fixture, toolkit, distances, details, lengths)
-        heights = heights_of(fixture, workpiece, toolkit, details)
+        distances = measure_edge_distances(fixture, workpiece, toolkit)
+        cautions = list_cautions(fixture, toolkit, distances, details, lengths)
+        heights = find_sheet_heights(fixture, workpiece, toolkit, details)
     sheet = Sheet(fixture, workpiece, toolkit, details, lengths, tuple(cautions), tuple(distances), heights)
-    figure = figure_of(sheet, bench)
+    figure = make_side_figure(sheet, bench)
     zero = sheet.zero_place
     near = bench.extent.grown(NEAR * bench.shown.pitch)
     zero_box, origin_box = Box(*zero, *zero), Box(0.0, 0.0, 0.0, 0.0)
@@ -88,21 +97,21 @@ def draw_sheet(
     path = None
     if details.program is not None:
         path = PlannedPath(details.program, fixture, details.passing)
-        extent = path.grown(extent)
+        extent = path.enlarge_extent(extent)
     width, height = (UNITS_PER_MM * side for side in PAPERS[details.paper_size])
-    layout = arranged((width, height), extent, *blocks_of(sheet), figure)
+    layout = arrange_sheet((width, height), extent, *make_blocks(sheet), figure)
     title = f"{sheet.name}: setup sheet of fixture {details.number}"
-    pages = [Scene.page(layout.page, title) for _ in (layout.columns, *layout.more)]
+    pages = [Scene.make_page(layout.page, title) for _ in (layout.columns, *layout.more)]
     scene = pages[0]
     room = layout.plan
-    view = View.fitting(extent, plan_room(room), layout.scale.factor * UNITS_PER_MM)
+    view = View.fit_box(extent, compute_plan_room(room), layout.scale.factor * UNITS_PER_MM)
     marks = [(zero, "X0 Y0")] if sheet.zero_shown else []
     if sheet.origin_shown and all(peg.hole != sheet.datum.name for peg in fixture.pegs):
         marks.append(((0.0, 0.0), sheet.datum.mark))
-    planned = None if details.supports is None else PlannedSupports.of(details.supports)
+    planned = None if details.supports is None else PlannedSupports.from_chosen(details.supports)
     draw_plan(scene, bench, view, workpiece, room, lengths, marks, angle="θ", supports=planned, path=path)
     words = f", scale {layout.scale.name}"
-    if bench.shown.carriers and not most_holes(view, bench.shown):
+    if bench.shown.carriers and not limit_holes_drawn(view, bench.shown):
         words += "; only the holes near the pegs are drawn"
     scale_bar(scene, (room.x0, room.y1), view.scale, lengths, more=words)
     for page, columns in zip(pages, (layout.columns, *layout.more), strict=True):
@@ -112,23 +121,23 @@ def draw_sheet(
         figure.draw(pages[1], box, scale.name, scale.factor)
     for number, page in enumerate(pages, 1):
         draw_foot(page, layout, sheet, f"{number} of {len(pages)}")
-    return tuple(page.svg() for page in pages)
+    return tuple(page.to_svg() for page in pages)
 
 
-def result_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]:
-    """The pages of the setup sheet of one fixture, as SVG text.
+def draw_setup_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]:
+    """Return the pages of the setup sheet of one fixture, as SVG text.
 
-    Its arguments and errors are those of :func:`workhold.drawing.sheet_facts.result_details`.
+    Its arguments and errors are those of :func:`workhold.drawing.sheet_facts.collect_sheet_details`.
     """
-    fixture, details = result_details(result, rank, **asked)
+    fixture, details = collect_sheet_details(result, rank, **asked)
     return draw_sheet(fixture, result.workpiece, result.toolkit, details)
 
 
-def figure_of(sheet: Sheet, bench: Bench) -> SideFigure | None:
-    """The view from the side; None where nobody knows how thick the part is."""
+def make_side_figure(sheet: Sheet, bench: Bench) -> SideFigure | None:
+    """Return the view from the side; None where nobody knows how thick the part is."""
     if sheet.heights is None:
         return None
-    view = side_view(bench, sheet.workpiece, sheet.heights, sheet.details.supports)
+    view = choose_side_view(bench, sheet.workpiece, sheet.heights, sheet.details.supports)
     return SideFigure(view, sheet.lengths, sheet.plates_noun)
 
 
@@ -153,21 +162,21 @@ def draw_foot(scene: Scene, layout: PageLayout, sheet: Sheet, page: str) -> None
         ("Program", f"workhold {details.version}"),
         ("Page", page),
     ]
-    widths = [max(text_width(name, 9), text_width(value, 12, bold=True)) + 16 for name, value in cells]
+    widths = [max(measure_text(name, 9), measure_text(value, 12, bold=True)) + 16 for name, value in cells]
     room = box.width - sum(widths)
     if room >= NARROWEST_NAME:
-        cells.insert(0, ("Part", shortened(sheet.name, 12, room - 16, bold=True)))
+        cells.insert(0, ("Part", shorten_text(sheet.name, 12, room - 16, bold=True)))
         widths.insert(0, room)
     else:
         widths = [cell + room / len(cells) for cell in widths]
     group = scene.group("foot")
-    group.rectangle(box, "#ffffff", BLACK, 1.4)
+    group.add_rectangle(box, "#ffffff", BLACK, 1.4)
     x = box.x0
     for (name, value), cell in zip(cells, widths, strict=True):
         if x > box.x0:
-            group.line([(x, box.y0), (x, box.y1)], BLACK, 0.8)
-        group.text((x + 8, box.y0 + 9), name, 9)
-        group.text((x + 8, box.y0 + 23), value, 12, bold=True)
+            group.add_line([(x, box.y0), (x, box.y1)], BLACK, 0.8)
+        group.add_text((x + 8, box.y0 + 9), name, 9)
+        group.add_text((x + 8, box.y0 + 23), value, 12, bold=True)
         x += cell
 
 
@@ -190,10 +199,10 @@ class StandardScale:
     factor: float
 
 
-def standard_scale(largest: float) -> StandardScale:
-    """The largest scale of these with at most ``largest`` millimetres on paper for one of the model.
+def choose_standard_scale(largest: float) -> StandardScale:
+    """Return the largest scale of these with at most ``largest`` millimetres on paper for one of the model.
 
-    >>> [standard_scale(largest).name for largest in (1.0, 0.99, 0.3, 7.0, 0.011)]
+    >>> [choose_standard_scale(largest).name for largest in (1.0, 0.99, 0.3, 7.0, 0.011)]
     ['1:1', '1:1.5', '1:4', '6:1', '1:100']
     """
     if largest >= 1 - ROUNDING:
@@ -248,14 +257,14 @@ class PageLayout:
     figure: tuple[Box, StandardScale] | None = None
 
 
-def arranged(
+def arrange_sheet(
     paper: Page,
     extent: Box,
     needed: Sequence[Block],
     others: Sequence[Block],
     figure: SideFigure | None = None,
 ) -> PageLayout:
-    """The best layout of blocks and a plan of an extent (mm) on paper.
+    """Return the best layout of blocks and a plan of an extent (mm) on paper.
 
     ``paper`` is width and height when upright, page units. Where the needed blocks leave no room for a plan,
     the last ones go to the second page. A view from the side stands at the top of that page.
@@ -263,18 +272,18 @@ def arranged(
     lying_page, blocks = (paper[1], paper[0]), [*needed, *others]
     least = len(needed)
     choices = [
-        *(beside(lying_page, extent, blocks, least, count, figure) for count in PANELS),
-        below(paper, extent, blocks, len(blocks), figure),
-        below(paper, extent, blocks, least, figure),
+        *(lay_out_beside_plan(lying_page, extent, blocks, least, count, figure) for count in PANELS),
+        lay_out_below_plan(paper, extent, blocks, len(blocks), figure),
+        lay_out_below_plan(paper, extent, blocks, least, figure),
         # A long part that stands upright, and one that lies.
-        beside(paper, extent, blocks, least, 1, figure),
-        below(lying_page, extent, blocks, least, figure),
+        lay_out_beside_plan(paper, extent, blocks, least, 1, figure),
+        lay_out_below_plan(lying_page, extent, blocks, least, figure),
     ]
     found = [choice for choice in choices if choice is not None]
     if not found and needed:
-        return arranged(paper, extent, needed[:-1], [needed[-1], *others], figure)
+        return arrange_sheet(paper, extent, needed[:-1], [needed[-1], *others], figure)
     # A block is never cut, and one that is too high for a lying page may stand on an upright one.
-    found = [choice for choice in found if not runs_over(choice)] or found
+    found = [choice for choice in found if not overflows_page(choice)] or found
     best = max(found, key=lambda choice: (choice.scale.factor, -len(choice.more)))
     single = [choice for choice in found if not choice.more]
     if single:
@@ -285,18 +294,21 @@ def arranged(
     return best
 
 
-def runs_over(choice: PageLayout) -> bool:
-    """Whether words run over the foot of a further page."""
+def overflows_page(choice: PageLayout) -> bool:
+    """Return whether words run over the foot of a further page."""
     columns = (column for page in choice.more for column in page)
-    return any(sum(height_of(block, box.width) for block in blocks) > box.height for box, blocks in columns)
+    return any(
+        sum(measure_block_height(block, box.width) for block in blocks) > box.height
+        for box, blocks in columns
+    )
 
 
-def plan_room(plan: Box) -> Box:
-    """The part of a plan's box that jaws and part may take."""
+def compute_plan_room(plan: Box) -> Box:
+    """Return the part of a plan's box that jaws and part may take."""
     return Box(plan.x0 + LEFT, plan.y0 + TOP, plan.x1 - RIGHT, plan.y1 - BOTTOM - SCALE_BAR)
 
 
-def layout_of(
+def make_layout(
     page: Page,
     extent: Box,
     plan: Box,
@@ -304,22 +316,22 @@ def layout_of(
     rest: Sequence[Block],
     figure: SideFigure | None = None,
 ) -> PageLayout | None:
-    """A layout with the rest of the blocks on further pages; None when no room is left for the plan."""
-    room = plan_room(plan)
+    """Return a layout with the rest of the blocks on further pages; None when no room is left for the plan."""
+    room = compute_plan_room(plan)
     if min(room.width, room.height) < SMALLEST_PLAN:
         return None
     largest = min(room.width / extent.width, room.height / extent.height)
-    scale, inner = standard_scale(largest / UNITS_PER_MM), inner_box(page)
+    scale, inner = choose_standard_scale(largest / UNITS_PER_MM), compute_inner_box(page)
     if figure is None:
-        return PageLayout(page, plan, tuple(columns), pages_of_words(inner, rest), scale)
-    largest = figure.largest(inner.width, MOST_FIGURE * inner.height, scale.factor)
-    own = standard_scale(largest)
-    foot, more = under_figure(inner, rest, figure, own)
-    smaller = standard_scale(largest * SMALLER_FIGURE)
+        return PageLayout(page, plan, tuple(columns), fill_pages(inner, rest), scale)
+    largest = figure.compute_largest_scale(inner.width, MOST_FIGURE * inner.height, scale.factor)
+    own = choose_standard_scale(largest)
+    foot, more = lay_out_under_figure(inner, rest, figure, own)
+    smaller = choose_standard_scale(largest * SMALLER_FIGURE)
     if len(more) > 1:
         # A smaller view saves a page that would hold a few words.
-        for step in between(smaller.factor, own.factor):
-            lower, fewer = under_figure(inner, rest, figure, step)
+        for step in list_scales_between(smaller.factor, own.factor):
+            lower, fewer = lay_out_under_figure(inner, rest, figure, step)
             if len(fewer) < len(more):
                 own, foot, more = step, lower, fewer
                 break
@@ -327,30 +339,30 @@ def layout_of(
     return PageLayout(page, plan, tuple(columns), more, scale, (top, own))
 
 
-def under_figure(
+def lay_out_under_figure(
     inner: Box, rest: Sequence[Block], figure: SideFigure, scale: StandardScale
 ) -> tuple[float, tuple[tuple[Filled, ...], ...]]:
-    """Where a view from the side at a scale ends, and the pages of words, the first below it."""
-    foot = inner.y0 + figure.height(inner.width, scale.factor)
-    return foot, pages_of_words(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
+    """Return where a view from the side at a scale ends, and the pages of words, the first below it."""
+    foot = inner.y0 + figure.compute_height(inner.width, scale.factor)
+    return foot, fill_pages(inner, rest, Box(inner.x0, foot + GUTTER, inner.x1, inner.y1)) or ((),)
 
 
-def between(least: float, most: float) -> list[StandardScale]:
-    """The standard scales from one below the larger factor down to the smaller one."""
+def list_scales_between(least: float, most: float) -> list[StandardScale]:
+    """Return the standard scales from one below the larger factor down to the smaller one."""
     found = list[StandardScale]()
-    scale = standard_scale(most * (1 - 1e-6))
+    scale = choose_standard_scale(most * (1 - 1e-6))
     while scale.factor >= least * (1 - ROUNDING):
         found.append(scale)
-        scale = standard_scale(scale.factor * (1 - 1e-6))
+        scale = choose_standard_scale(scale.factor * (1 - 1e-6))
     return found
 
 
-def beside(
+def lay_out_beside_plan(
     page: Page, extent: Box, blocks: Sequence[Block], least: int, count: int, figure: SideFigure | None = None
 ) -> PageLayout | None:
-    """Plan at the left and a panel of ``count`` columns; None when the ``least`` first blocks do not fit."""
-    inner, width = inner_box(page), PANELS[count]
-    heights = [height_of(block, width) for block in blocks]
+    """Return the plan at the left and a panel of ``count`` columns; None when the ``least`` first blocks do not fit."""
+    inner, width = compute_inner_box(page), PANELS[count]
+    heights = [measure_block_height(block, width) for block in blocks]
     columns, first = [], 0
     for k in range(count):
         last = first
@@ -362,26 +374,28 @@ def beside(
     if first < least:
         return None
     plan = Box(inner.x0, inner.y0, columns[0][0].x0 - GUTTER, inner.y1)
-    return layout_of(page, extent, plan, columns, blocks[first:], figure)
+    return make_layout(page, extent, plan, columns, blocks[first:], figure)
 
 
-def below(
+def lay_out_below_plan(
     page: Page, extent: Box, blocks: Sequence[Block], first: int, figure: SideFigure | None = None
 ) -> PageLayout | None:
-    """Plan above and the ``first`` blocks in a strip of two columns, of three on a lying page."""
-    inner, count = inner_box(page), 3 if page[0] > page[1] else 2
+    """Return the plan above and the ``first`` blocks in a strip of two columns, of three on a lying page."""
+    inner, count = compute_inner_box(page), 3 if page[0] > page[1] else 2
     width = (inner.width - (count - 1) * GUTTER) / count
-    runs, height = level_runs(blocks[:first], [height_of(block, width) for block in blocks[:first]], count)
+    runs, height = balance_runs(
+        blocks[:first], [measure_block_height(block, width) for block in blocks[:first]], count
+    )
     top = inner.y1 - height
-    columns = side_by_side(Box(inner.x0, top, inner.x1, inner.y1), runs)
+    columns = place_in_columns(Box(inner.x0, top, inner.x1, inner.y1), runs)
     plan = Box(inner.x0, inner.y0, inner.x1, top - GUTTER)
-    return layout_of(page, extent, plan, columns, blocks[first:], figure)
+    return make_layout(page, extent, plan, columns, blocks[first:], figure)
 
 
-def pages_of_words(
+def fill_pages(
     inner: Box, blocks: Sequence[Block], first: Box | None = None
 ) -> tuple[tuple[Filled, ...], ...]:
-    """The columns of as few pages as hold the blocks: three on a lying page, two on an upright one.
+    """Return the columns of as few pages as hold the blocks: three on a lying page, two on an upright one.
 
     ``inner`` is a page without margins and foot, ``first`` what there is of the first page, where not all of
     it is free.
@@ -390,29 +404,29 @@ def pages_of_words(
         return ()
     count, box = 3 if inner.width > inner.height else 2, inner if first is None else first
     width = (inner.width - (count - 1) * GUTTER) / count
-    heights = [height_of(block, width) for block in blocks]
-    runs = filled_runs(blocks, heights, count, box.height)
+    heights = [measure_block_height(block, width) for block in blocks]
+    runs = fill_runs(blocks, heights, count, box.height)
     if runs is not None:
-        return (tuple(side_by_side(box, runs)),)
+        return (tuple(place_in_columns(box, runs)),)
     fits = (
         last
         for last in range(len(blocks), 1, -1)
-        if level_runs(blocks[:last], heights[:last], count)[1] <= box.height
+        if balance_runs(blocks[:last], heights[:last], count)[1] <= box.height
     )
     last = next(fits, 0 if heights[0] > box.height and first is not None else 1)
-    runs, _ = level_runs(blocks[:last], heights[:last], count)
-    return (tuple(side_by_side(box, runs)), *pages_of_words(inner, blocks[last:]))
+    runs, _ = balance_runs(blocks[:last], heights[:last], count)
+    return (tuple(place_in_columns(box, runs)), *fill_pages(inner, blocks[last:]))
 
 
-def filled_runs(
+def fill_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int, height: float
 ) -> list[Sequence[Block]] | None:
-    """Runs that hold all blocks within a height; None where there are none.
+    """Return the runs that hold all blocks within a height; None where there are none.
 
     The first of them stand in their order, and the rest where a column has room below.
     """
     for last in range(len(blocks), 0, -1):
-        runs, most = level_runs(blocks[:last], heights[:last], count)
+        runs, most = balance_runs(blocks[:last], heights[:last], count)
         if most > height:
             continue
         sizes = dict(zip(map(id, blocks), heights, strict=True))
@@ -429,27 +443,27 @@ def filled_runs(
     return None
 
 
-def side_by_side(box: Box, runs: Sequence[Sequence[Block]]) -> list[Filled]:
-    """Runs of blocks in columns of equal width."""
+def place_in_columns(box: Box, runs: Sequence[Sequence[Block]]) -> list[Filled]:
+    """Return the runs of blocks in columns of equal width."""
     width = (box.width - (len(runs) - 1) * GUTTER) / len(runs)
     lefts = [box.x0 + k * (width + GUTTER) for k in range(len(runs))]
     return [(Box(x0, box.y0, x0 + width, box.y1), tuple(run)) for x0, run in zip(lefts, runs, strict=True)]
 
 
-def inner_box(page: Page) -> Box:
-    """A page without its margins and its foot."""
+def compute_inner_box(page: Page) -> Box:
+    """Return a page without its margins and its foot."""
     return Box(MARGIN, MARGIN, page[0] - MARGIN, page[1] - MARGIN - FOOT)
 
 
-def level_runs(
+def balance_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int
 ) -> tuple[list[Sequence[Block]], float]:
-    """Blocks in ``count`` runs as level as their order allows, and the height of the highest."""
+    """Return the blocks in ``count`` runs as level as their order allows, and the height of the highest."""
     if count == 1:
         return [blocks], sum(heights)
     best: tuple[list[Sequence[Block]], float] | None = None
     for cut in range(len(blocks) + 1):
-        runs, height = level_runs(blocks[cut:], heights[cut:], count - 1)
+        runs, height = balance_runs(blocks[cut:], heights[cut:], count - 1)
         highest = max(sum(heights[:cut]), height)
         if best is None or highest < best[1]:
             best = [blocks[:cut], *runs], highest

@@ -16,20 +16,20 @@ from workhold.drawing.hold_blocks import hold_writers
 from workhold.drawing.panel import (
     NUMBERS,
     TextColumn,
-    diameter_words,
+    describe_diameter,
+    describe_fixture,
+    describe_holes,
+    describe_move,
     draw_legend,
-    fixture_words,
-    holes_words,
-    moved_words,
+    format_count,
+    format_value,
+    name_pegs,
     offset_words,
-    pegs_words,
-    plural,
-    value_words,
 )
 from workhold.drawing.program_picture import write_program
-from workhold.drawing.scene import BLACK, LengthUnit, degrees_text, shortened, text_width, wrapped
+from workhold.drawing.scene import BLACK, LengthUnit, format_degrees, measure_text, shorten_text, wrap_text
 from workhold.drawing.seats import write_seating, write_wrong_seats
-from workhold.drawing.sheet_facts import caliper_check
+from workhold.drawing.sheet_facts import choose_caliper_check
 from workhold.drawing.sheet_writing import (
     BODY,
     NOTE,
@@ -37,18 +37,18 @@ from workhold.drawing.sheet_writing import (
     MovingBlocks,
     Sheet,
     Writer,
-    fact_or_field,
-    heading,
-    inside_words,
-    lies_words,
-    peg_rows,
+    describe_lie,
+    describe_pegs_in_holes,
+    make_peg_rows,
     write_dowel,
+    write_fact_or_field,
     write_flats,
+    write_heading,
 )
 from workhold.drawing.supports_drawn import draw_pad, draw_tip, support_steps, write_heights, write_supports
 from workhold.drawing.upper_side import write_part, write_side, write_side_up
-from workhold.errors import listed
-from workhold.fixels.carrier import Carrier, Measure, column_letters, hole_name
+from workhold.errors import join_words
+from workhold.fixels.carrier import Carrier, Measure, make_column_letters, make_hole_name
 from workhold.fixels.contacts import WALL_END
 from workhold.model.clamps import (
     compute_clamp_force_ratio,
@@ -72,43 +72,43 @@ from workhold.model.setup import LengthSetting, name_contacts
 from workhold.statics.loads import describe_jaw
 from workhold.units import INCH
 
-__all__ = ["blocks_of"]
+__all__ = ["make_blocks"]
 
 
 def write_pegs(column: TextColumn, sheet: Sheet) -> None:
     toolkit, plates = sheet.toolkit, sheet.toolkit.plates
     first, noun = plates[0], toolkit.moving.noun
-    heading(column, f"{toolkit.setup_words.standing} {peg_size(sheet, first)}")
-    header, rows, per = peg_rows(sheet)
+    write_heading(column, f"{toolkit.setup_words.standing} {describe_peg_size(sheet, first)}")
+    header, rows, per = make_peg_rows(sheet)
     table = [header, *rows]
     if len(plates) > 1:
         stands_on = [first.noun, *(peg.carrier for peg in sheet.fixture.pegs)]
         table = [[row[0], word, *row[1:]] for row, word in zip(table, stands_on, strict=True)]
-    column.table(table[0], table[1:], BODY)
+    column.write_table(table[0], table[1:], BODY)
     of_tips = f" or of {'the' if sheet.is_closed_at_once else 'a'} {noun}'s tip" if toolkit.tips else ""
     of_plate = f" of the fixed {first.noun}" if len(plates) > 1 else ""
-    column.paragraph(
+    column.write_paragraph(
         f"x, y: centre of the {first.peg}{of_tips}, from {sheet.datum.point}{of_plate}"
         f"{'' if sheet.origin_shown else ', which lies beside the plan'}.",
         NOTE,
     )
     for wall in (carrier for carrier in toolkit.carriers if carrier.contact is WALL_END):
         write_flush(column, sheet, wall)
-    if words := describe_overhang(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.words):
-        column.paragraph(words, NOTE, bold=True)
+    if words := describe_overhang(sheet.fixture, toolkit, sheet.workpiece, sheet.lengths.format_length):
+        column.write_paragraph(words, NOTE, bold=True)
     added = "" if sheet.is_closed_at_once else f"; this force is the sum of both {noun}s, in the ratio below"
-    column.paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
+    column.write_paragraph(f"{per} of {noun} force{added}, without friction.", NOTE)
     write_flats(column, sheet)
     write_dowel(column, sheet)
 
 
-def peg_size(sheet: Sheet, carrier: Carrier) -> str:
+def describe_peg_size(sheet: Sheet, carrier: Carrier) -> str:
     if not carrier.peg_radius:
         return "(points, no diameter)"
     lengths = sheet.lengths
-    size = f"Ø {lengths.short(2 * carrier.peg_radius)}"
+    size = f"Ø {lengths.format_short(2 * carrier.peg_radius)}"
     if carrier.body_radius > carrier.peg_radius:
-        size += f", body Ø {lengths.short(2 * carrier.body_radius)}"
+        size += f", body Ø {lengths.format_short(2 * carrier.body_radius)}"
     return size
 
 
@@ -118,82 +118,84 @@ def write_flush(column: TextColumn, sheet: Sheet, wall: Carrier) -> None:
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
     words = f"The part lies flush on the {wall.noun} {lies}."
     if wall.width is not None:
-        words += f" The {wall.noun} is {sheet.lengths.words(wall.width)} wide."
+        words += f" The {wall.noun} is {sheet.lengths.format_length(wall.width)} wide."
     if edge is not None:
-        words += f" Row 1 of the {plate.noun} is {sheet.lengths.words(edge)} from the {wall.noun}."
-    column.paragraph(words, NOTE)
+        words += f" Row 1 of the {plate.noun} is {sheet.lengths.format_length(edge)} from the {wall.noun}."
+    column.write_paragraph(words, NOTE)
 
 
 def put_words(sheet: Sheet) -> str:
     plates, holes = sheet.toolkit.plates, list[str]()
     for plate in plates:
-        there = listed([peg.hole for peg in sheet.fixture.pegs if peg.carrier == plate.name])
+        there = join_words([peg.hole for peg in sheet.fixture.pegs if peg.carrier == plate.name])
         stands = "fixed" if plate.travel is None else "sliding"
         holes.append(f"{there} of the {stands} {plate.title}" if len(plates) > 1 else there)
     first, edge = plates[0], sheet.datum.edge
     return sheet.toolkit.setup_words.put.format(
         peg=first.peg,
         plate=first.noun,
-        holes=listed(holes),
-        edge="" if edge is None else sheet.lengths.words(edge),
+        holes=join_words(holes),
+        edge="" if edge is None else sheet.lengths.format_length(edge),
     )
 
 
-def touch_words(sheet: Sheet) -> str:
-    touch = listed([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
+def describe_touch(sheet: Sheet) -> str:
+    touch = join_words([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
     return f"{touch}. A strip of paper must not pull out at any of them."
 
 
 def write_opening(column: TextColumn, sheet: Sheet) -> None:
     fixture, toolkit, lengths = sheet.fixture, sheet.toolkit, sheet.lengths
     first, moving = toolkit.plates[0], toolkit.moving
-    heading(column, f"Opening S of the {moving.noun}s")
-    column.words(lengths.words(fixture.travel), 28, bold=True, gap=0.4)
+    write_heading(column, f"Opening S of the {moving.noun}s")
+    column.write_line(lengths.format_length(fixture.travel), 28, bold=True, gap=0.4)
     if first == moving:
-        column.paragraph(f"From {sheet.datum.y} to the centres of row 1 of the {moving.title}.", NOTE)
+        column.write_paragraph(f"From {sheet.datum.y} to the centres of row 1 of the {moving.title}.", NOTE)
         return
-    check = caliper_check(fixture, toolkit)
-    one, other = (column_letters(hole[0]) for hole in (check.left, check.right))
+    check = choose_caliper_check(fixture, toolkit)
+    one, other = (make_column_letters(hole[0]) for hole in (check.left, check.right))
     between = f"column {one} of the {first.title} to those of column {other} of the {moving.title}"
-    column.paragraph(f"x from the centres of {between}.", NOTE)
-    left, right = hole_name(first.name, *check.left), hole_name(moving.name, *check.right)
+    column.write_paragraph(f"x from the centres of {between}.", NOTE)
+    left, right = make_hole_name(first.name, *check.left), make_hole_name(moving.name, *check.right)
     diameter = 2 * first.peg_radius
     spare = {2: "", 1: " (one of them a spare)", 0: " (both spare)"}[check.placed]
     column.y += 3
-    column.paragraph(f"Calipers on pegs in {left} and {right}{spare}:", BODY)
+    column.write_paragraph(f"Calipers on pegs in {left} and {right}{spare}:", BODY)
     if diameter == 0:
-        column.fact("centre to centre", lengths.words(check.distance), bold=True)
+        column.write_fact("centre to centre", lengths.format_length(check.distance), bold=True)
         return
     if check.distance > diameter:
-        column.fact("inside, between the pegs", lengths.words(check.distance - diameter), bold=True)
-    column.fact("outside, over both pegs", lengths.words(check.distance + diameter), bold=True)
+        column.write_fact(
+            "inside, between the pegs", lengths.format_length(check.distance - diameter), bold=True
+        )
+    column.write_fact("outside, over both pegs", lengths.format_length(check.distance + diameter), bold=True)
 
 
-def opening_steps(sheet: Sheet) -> list[str]:
+def list_opening_steps(sheet: Sheet) -> list[str]:
     fixture, lengths, moving = sheet.fixture, sheet.lengths, sheet.toolkit.moving
     words, force = sheet.toolkit.setup_words, sheet.details.jaw_force
     there, more, back = "Open", "wider", "Close"
     if sheet.toolkit.clamping < 0:
         there, more, back = "Close", "narrower", "Open"
-    with_force = "" if force is None else f" with {lengths.unit.force_words(force)}"
+    with_force = "" if force is None else f" with {lengths.unit.format_force(force)}"
     against = f", {words.against}" if words.against else ""
     count = len(fixture.placed)
     pegs = "both" if count == 2 else f"all {NUMBERS[count]}"
     return [
         put_words(sheet),
-        f"{there} the {moving.noun}s a little {more} than S = {lengths.words(fixture.travel)} and "
-        f"lay the part in as drawn, {lies_words(sheet)}{against}.{inside_words(sheet)}",
+        f"{there} the {moving.noun}s a little {more} than S = {lengths.format_length(fixture.travel)} and "
+        f"lay the part in as drawn, {describe_lie(sheet)}{against}.{describe_pegs_in_holes(sheet)}",
         f"{back} the {moving.title} until {pegs} pegs touch. The opening is then S; if not, the part "
         "lies another way.",
-        f"Clamp{with_force}. The pegs touch: {touch_words(sheet)}",
+        f"Clamp{with_force}. The pegs touch: {describe_touch(sheet)}",
     ]
 
 
-OPENING = MovingBlocks(lambda sheet: [write_opening], opening_steps)
+OPENING = MovingBlocks(lambda sheet: [write_opening], list_opening_steps)
 
 
 def clamp_writers(sheet: Sheet) -> list[Writer]:
-    """The blocks about the clamp, or about each of two and the order in which they are tightened."""
+    """Return the blocks about the clamp, or about each of two and the order in which they are tightened."""
     shares = compute_clamp_shares(sheet.fixture)
     each: list[Writer] = [
         partial(write_clamp, setting=one, share=share)
@@ -204,27 +206,35 @@ def clamp_writers(sheet: Sheet) -> list[Writer]:
 
 def write_clamp(column: TextColumn, sheet: Sheet, setting: LengthSetting, share: float) -> None:
     clamp, lengths = setting.carrier, sheet.lengths
-    heading(column, f"{setting.label} {setting.place}")
-    column.words(lengths.words(setting.length), 28 if sheet.is_closed_at_once else 22, bold=True, gap=0.4)
+    write_heading(column, f"{setting.label} {setting.place}")
+    column.write_line(
+        lengths.format_length(setting.length), 28 if sheet.is_closed_at_once else 22, bold=True, gap=0.4
+    )
     how = setting.mounting.how.format(place=setting.place, title=setting.caption)
-    column.paragraph(f"{how}, once it touches.", NOTE)
+    column.write_paragraph(f"{how}, once it touches.", NOTE)
     column.y += 3
     direction = clamp.direction.replace("-", "−")
-    column.fact("pushes", f"{clamp.towards}, {direction}", bold=True)
-    column.fact("round tip", diameter_words(clamp, lengths), bold=True)
+    column.write_fact("pushes", f"{clamp.towards}, {direction}", bold=True)
+    column.write_fact("round tip", describe_diameter(clamp, lengths), bold=True)
     if clamp.travel is not None and clamp.travel.most is not None:
         least, most = sorted((abs(clamp.travel.least), abs(clamp.travel.most)))
-        column.fact("stroke it has", f"{lengths.short_number(least)} to {lengths.short(most)}")
+        column.write_fact(
+            "stroke it has", f"{lengths.format_short_number(least)} to {lengths.format_short(most)}"
+        )
     force, unit = sheet.details.jaw_force, lengths.unit
-    fact_or_field(column, f"{clamp.noun} force", None if force is None else unit.force_words(share * force))
+    write_fact_or_field(
+        column, f"{clamp.noun} force", None if force is None else unit.format_force(share * force)
+    )
     if sheet.details.loads or sheet.details.cutting is not None:
-        needed = share * needed_force(sheet)
-        column.fact("the loads need at least", f"{unit.force_above(needed)} {unit.force}", bold=True)
-    fact_or_field(column, "torque of its screw", None)
+        needed = share * compute_needed_clamp_force(sheet)
+        column.write_fact(
+            "the loads need at least", f"{unit.format_force_rounded_up(needed)} {unit.force}", bold=True
+        )
+    write_fact_or_field(column, "torque of its screw", None)
 
 
-def needed_force(sheet: Sheet) -> float:
-    """The clamp force, of two clamps added up, that the loads and the program need, in N."""
+def compute_needed_clamp_force(sheet: Sheet) -> float:
+    """Return the clamp force, of two clamps added up, that the loads and the program need, in N."""
     cutting = sheet.details.cutting
     needs = [case.needed.value for case in sheet.details.loads]
     return max([*needs, 0.0 if cutting is None else cutting.jaw.force])
@@ -232,12 +242,12 @@ def needed_force(sheet: Sheet) -> float:
 
 def write_order(column: TextColumn, sheet: Sheet) -> None:
     fixture, (first, second) = sheet.fixture, name_clamps(sheet.fixture)
-    heading(column, "Order of tightening")
-    column.paragraph(order_words(fixture), BODY, bold=True)
+    write_heading(column, "Order of tightening")
+    column.write_paragraph(order_words(fixture), BODY, bold=True)
     ratio = compute_clamp_force_ratio(fixture)
     freedom = fixture.quality["clamp_freedom"]
-    column.fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
-    column.paragraph(
+    column.write_fact("clamp freedom, of 90°", f"{freedom:.1f}°", bold=True)
+    column.write_paragraph(
         f"{describe_clamp_freedom(freedom).capitalize()}. The forces on this sheet are for {second} with "
         f"{ratio:.2f} times the force of {first}, the middle of the range that holds.",
         NOTE,
@@ -255,7 +265,7 @@ def clamp_steps(sheet: Sheet) -> list[str]:
         what = setting.mounting.then.format(name=setting.name, title=setting.title)
         ups.append(
             f"Bring {one} up until its tip touches face {tip.face}. {what} is then "
-            f"{lengths.words(setting.length)}{'; if not, the part lies another way.' if alone else '.'}"
+            f"{lengths.format_length(setting.length)}{'; if not, the part lies another way.' if alone else '.'}"
         )
     if not alone:
         ups.append("If a length is not as stated, the part lies another way.")
@@ -263,50 +273,50 @@ def clamp_steps(sheet: Sheet) -> list[str]:
     against = toolkit.setup_words.against.format(count=NUMBERS[count], peg=plate.peg)
     return [
         f"{put_words(sheet)} {' '.join(bolts)}",
-        f"Lay the part in as drawn, {lies_words(sheet)}, {against}.{inside_words(sheet)}",
+        f"Lay the part in as drawn, {describe_lie(sheet)}, {against}.{describe_pegs_in_holes(sheet)}",
         " ".join(ups),
-        f"{clamping_words(sheet)} They touch: {touch_words(sheet)}",
+        f"{describe_clamping(sheet)} They touch: {describe_touch(sheet)}",
     ]
 
 
-def clamping_words(sheet: Sheet) -> str:
+def describe_clamping(sheet: Sheet) -> str:
     fixture, force, unit = sheet.fixture, sheet.details.jaw_force, sheet.lengths.unit
     if sheet.is_closed_at_once:
-        return f"Clamp{'' if force is None else f' with {unit.force_words(force)}'}."
+        return f"Clamp{'' if force is None else f' with {unit.format_force(force)}'}."
     if force is None:
         return order_words(fixture)
     shares = zip(name_clamps(fixture), compute_clamp_shares(fixture), strict=True)
-    each = [f"{unit.force_words(share * force)} at {name}" for name, share in shares]
-    return f"{order_words(fixture)} {listed(each)} add up to the {unit.force_words(force)} given."
+    each = [f"{unit.format_force(share * force)} at {name}" for name, share in shares]
+    return f"{order_words(fixture)} {join_words(each)} add up to the {unit.format_force(force)} given."
 
 
 CLAMPS = MovingBlocks(clamp_writers, clamp_steps)
 
 
 def write_counting(column: TextColumn, sheet: Sheet) -> None:
-    heading(column, "Counting holes")
+    write_heading(column, "Counting holes")
     several = len(sheet.toolkit.plates) > 1
     (write_jaws if several else write_plate)(column, sheet)
 
 
 def write_jaws(column: TextColumn, sheet: Sheet) -> None:
     lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
-    pitch_x, pitch_y = (lengths.short(pitch) for pitch in first.pitch)
+    pitch_x, pitch_y = (lengths.format_short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
     size, where = f"one column of holes, {pitch_y} apart", f"A on both {first.noun}s"
     if first.column_count > 1:
         size = f"{first.column_count} columns of holes, {pitch_x} apart; the rows are {pitch_y} apart"
-        where = f"A to {column_letters(first.column_count - 1)} from left to right, on each {first.noun}"
-    example = f"{peg.hole} is the {first.title}'s column {column_letters(peg.column)}, row {peg.row + 1}"
-    column.paragraph(f"{example}. Each {first.noun} has {size}.", BODY)
+        where = f"A to {make_column_letters(first.column_count - 1)} from left to right, on each {first.noun}"
+    example = f"{peg.hole} is the {first.title}'s column {make_column_letters(peg.column)}, row {peg.row + 1}"
+    column.write_paragraph(f"{example}. Each {first.noun} has {size}.", BODY)
     rows = f"Row 1 is the lowest. It can be any row of the vise, the same one on both {first.noun}s."
     if first.rows is not None:
         rows = f"Row 1 is the lowest of {first.rows}."
-    column.paragraph(f"Columns: {where}. {rows}", BODY)
+    column.write_paragraph(f"Columns: {where}. {rows}", BODY)
     if offset := offset_words(sheet.toolkit, lengths):
-        column.paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
+        column.write_paragraph(f"Row 1 of the {moving.title} lies {offset} that of the {first.name}.", BODY)
     if words := place_words(sheet):
-        column.paragraph(words, BODY)
+        column.write_paragraph(words, BODY)
 
 
 def write_plate(column: TextColumn, sheet: Sheet) -> None:
@@ -314,30 +324,30 @@ def write_plate(column: TextColumn, sheet: Sheet) -> None:
     peg = next(peg for peg in sheet.fixture.pegs if peg.carrier == plate.name)
     pitch_x, pitch_y = plate.pitch
     apart = (
-        f"{lengths.short(pitch_x)} apart both ways"
+        f"{lengths.format_short(pitch_x)} apart both ways"
         if pitch_x == pitch_y
-        else f"{lengths.short(pitch_x)} apart along the rows and {lengths.short(pitch_y)} along the columns"
+        else f"{lengths.format_short(pitch_x)} apart along the rows and {lengths.format_short(pitch_y)} along the columns"
     )
-    named = f"{peg.hole} is column {column_letters(peg.column)}, row {peg.row + 1}"
-    column.paragraph(f"{named}: columns from left to right, rows from {sheet.datum.rows_from}.", BODY)
-    size = "" if plate.columns is None and plate.rows is None else f", {holes_words(plate)}"
-    column.paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
-    column.paragraph(moving_words(sheet), BODY)
+    named = f"{peg.hole} is column {make_column_letters(peg.column)}, row {peg.row + 1}"
+    column.write_paragraph(f"{named}: columns from left to right, rows from {sheet.datum.rows_from}.", BODY)
+    size = "" if plate.columns is None and plate.rows is None else f", {describe_holes(plate)}"
+    column.write_paragraph(f"The holes of the {plate.noun} are {apart}{size}.", BODY)
+    column.write_paragraph(describe_moving(sheet), BODY)
     if words := place_words(sheet):
-        column.paragraph(words, BODY)
+        column.write_paragraph(words, BODY)
 
 
 def place_words(sheet: Sheet) -> str:
-    """Where on its plate all of a set-up stands, a sentence; nothing where that is as it is listed."""
+    """Return where on its plate all of a set-up stands, a sentence; nothing where that is as it is listed."""
     if sheet.details.supports is not None or sheet.details.moved == (0, 0):
         return ""
     where = (
         "as asked" if sheet.details.is_asked_place else f"in the middle of the {sheet.toolkit.plates[0].noun}"
     )
-    return f"The whole set-up stands {moved_words(sheet.details.moved)} than in the list, {where}."
+    return f"The whole set-up stands {describe_move(sheet.details.moved)} than in the list, {where}."
 
 
-def moving_words(sheet: Sheet) -> str:
+def describe_moving(sheet: Sheet) -> str:
     ways = []
     spares = count_spare_holes(sheet.fixture, sheet.toolkit)
     words = (("column", "left", "right"), ("row", "down", "up"))
@@ -346,12 +356,10 @@ def moving_words(sheet: Sheet) -> str:
             if spare is None:
                 ways.append(f"any {noun}s further {way}")
             elif spare:
-                ways.append(f"up to {plural(spare, noun)} further {way}")
+                ways.append(f"up to {format_count(spare, noun)} further {way}")
     if not ways:
         return f"The set-up fits the {sheet.toolkit.noun} in this place only."
-    return (
-        f"The whole set-up may stand {listed(ways)}; then measure all places from {sheet.datum.substitute}."
-    )
+    return f"The whole set-up may stand {join_words(ways)}; then measure all places from {sheet.datum.substitute}."
 
 
 ON_THE_SHEET = (
@@ -369,8 +377,8 @@ WIDEST_LOAD = 0.3
 
 
 def write_quality(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the figures of quality that are known, but for those that other blocks show."""
-    heading(column, "Quality")
+    """Write the figures of quality that are known, but for those that other blocks show."""
+    write_heading(column, "Quality")
     for figure in (FIGURES[number] for number in ON_THE_SHEET):
         value = sheet.fixture.quality.get(figure.key)
         if value is None:
@@ -382,27 +390,29 @@ def write_quality(column: TextColumn, sheet: Sheet) -> None:
             ):
                 words = "no edge there"
             case "mm":
-                words = sheet.lengths.words(value)
+                words = sheet.lengths.format_length(value)
             case "N":
-                words = sheet.lengths.unit.force_words(value)
+                words = sheet.lengths.unit.format_force(value)
             case _:
-                words = value_words(value)
-        column.fact(figure.words + (" (largest peg force)" if figure.key == "load_reaction" else ""), words)
+                words = format_value(value)
+        column.write_fact(
+            figure.words + (" (largest peg force)" if figure.key == "load_reaction" else ""), words
+        )
     tolerance, lengths = sheet.details.tolerance, sheet.lengths
     if "location_error" in sheet.fixture.quality:
         sizes = (tolerance.peg, tolerance.face, tolerance.departure)
-        peg, face, off = (lengths.short(size, 3) for size in sizes)
+        peg, face, off = (lengths.format_short(size, 3) for size in sizes)
         read = f", of which {off} because the drawing's curves were read as arcs"
         allowed = f"pegs off by up to {peg}, faces by {face}{read if tolerance.departure else ''}"
-        column.paragraph(f"Location error: {allowed}.", NOTE)
+        column.write_paragraph(f"Location error: {allowed}.", NOTE)
     if sheet.details.why_first:
-        column.paragraph(sheet.details.why_first, NOTE)
+        column.write_paragraph(sheet.details.why_first, NOTE)
 
 
 def load_words(load: Load, lengths: LengthUnit) -> str:
-    """What a load is, in the part's coordinates.
+    """Return what a load is, in the part's coordinates.
 
-    >>> load_words(Load(((10, 5),), 200, (30, 30), -500), LengthUnit.mm(1))
+    >>> load_words(Load(((10, 5),), 200, (30, 30), -500), LengthUnit.in_mm(1))
     '200 N at x 10.0, y 5.0 mm, towards 30°; moment −0.5 N m'
     """
     unit, words = lengths.unit, []
@@ -416,51 +426,60 @@ def load_words(load: Load, lengths: LengthUnit) -> str:
         low, high = load.directions
         towards = f"towards {low:g}°" if low == high else f"towards {low:g}° to {high:g}°"
         any_way = load.directions == ANY_DIRECTION
-        words.append(f"{unit.force_words(load.force)} at {place}, {'any direction' if any_way else towards}")
+        words.append(f"{unit.format_force(load.force)} at {place}, {'any direction' if any_way else towards}")
     if load.moment:
-        words.append(f"moment {unit.moment_words(load.moment)}")
+        words.append(f"moment {unit.format_moment(load.moment)}")
     return "; ".join(words)
 
 
 def write_loads(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the loads, the hardest first, with the jaw force needed and each peg's largest force."""
+    """Write the loads, the hardest first, with the jaw force needed and each peg's largest force."""
     details, unit, moving = sheet.details, sheet.lengths.unit, sheet.toolkit.moving
-    heading(column, f"Loads and reactions, {unit.force}")
+    write_heading(column, f"Loads and reactions, {unit.force}")
     cases = sorted(enumerate(details.loads, 1), key=lambda numbered: -numbered[1].needed.value)
     friction = [] if details.friction is None else [f"µ {details.friction:g}"]
     names = [name.removeprefix(f"{moving.noun} ") for name in name_contacts(sheet.fixture, sheet.toolkit)]
     header = ["Load", "needs" if sheet.toolkit.tips else moving.pushers, *friction, *names]
     rows = []
     for number, case in cases[:MOST_LOADS]:
-        name = shortened(case.load.name or f"load {number}", BODY, WIDEST_LOAD * column.width, bold=True)
+        name = shorten_text(case.load.name or f"load {number}", BODY, WIDEST_LOAD * column.width, bold=True)
         held = case.needed_with_friction
-        more = [] if details.friction is None else ["–" if held is None else unit.force_above(held)]
-        rows.append([name, unit.force_above(case.needed.value), *more, *map(unit.force_above, case.largest)])
-    column.table(header, rows, BODY)
+        more = (
+            [] if details.friction is None else ["–" if held is None else unit.format_force_rounded_up(held)]
+        )
+        rows.append(
+            [
+                name,
+                unit.format_force_rounded_up(case.needed.value),
+                *more,
+                *map(unit.format_force_rounded_up, case.largest),
+            ]
+        )
+    column.write_table(header, rows, BODY)
     for number, case in cases[:MOST_LOADS]:
-        column.paragraph(
+        column.write_paragraph(
             f"{case.load.name or f'load {number}'}: {load_words(case.load, sheet.lengths)}.", NOTE
         )
     if len(cases) > MOST_LOADS:
-        column.paragraph(
+        column.write_paragraph(
             f"The other {len(cases) - MOST_LOADS} loads need no more {moving.noun} force than these.", NOTE
         )
-    at = unit.force_words(cases[0][1].jaw_force)
+    at = unit.format_force(cases[0][1].jaw_force)
     what = f"the {moving.noun} force below which a peg lets go in "
     what += describe_jaw(cases[0][1].jaw_stiffness, sheet.toolkit)
-    column.paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
+    column.write_paragraph(f"{header[1].capitalize()}: {what}, without friction.", NOTE)
     if not sheet.is_closed_at_once:
-        column.paragraph(
+        column.write_paragraph(
             f"The {moving.noun} force is the sum of both {moving.noun}s, in the ratio above.", NOTE
         )
     if details.friction is not None:
-        column.paragraph(
+        column.write_paragraph(
             f"µ {details.friction:g}: the least {moving.noun} force that could hold at all with that "
             "friction.",
             NOTE,
         )
-    column.paragraph(
-        f"The column of each {pegs_words(sheet.toolkit)} has its largest force on the part at a "
+    column.write_paragraph(
+        f"The column of each {name_pegs(sheet.toolkit)} has its largest force on the part at a "
         f"{moving.noun} force of {at}.",
         NOTE,
     )
@@ -469,7 +488,7 @@ def write_loads(column: TextColumn, sheet: Sheet) -> None:
 def write_bending(column: TextColumn, sheet: Sheet) -> None:
     bent, lengths, mover = sheet.details.bent, sheet.lengths, sheet.toolkit.moving.noun
     assert bent is not None
-    heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")
+    write_heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")
     at = bent.at_force(mover, lengths.unit)
     header = [
         "",
@@ -482,16 +501,16 @@ def write_bending(column: TextColumn, sheet: Sheet) -> None:
             peg.hole,
             lengths.number(peg.height),
             lengths.number(peg.deflection),
-            lengths.unit.stress_number(peg.stress),
+            lengths.unit.format_stress_number(peg.stress),
         ]
         for peg in bent.pegs
     ]
-    column.table(header, rows, BODY)
-    column.fact("moves the part by up to", lengths.words(bent.movement))
-    column.fact("with forces at the top", lengths.words(bent.worst_movement))
-    column.paragraph(
+    column.write_table(header, rows, BODY)
+    column.write_fact("moves the part by up to", lengths.format_length(bent.movement))
+    column.write_fact("with forces at the top", lengths.format_length(bent.worst_movement))
+    column.write_paragraph(
         f"{at[0].upper()}{at[1:]}, on top of the location error. The pegs are taken as built in "
-        f"at the {sheet.plates_noun}, Ø {lengths.short(bent.most.diameter)}; in a real hole they "
+        f"at the {sheet.plates_noun}, Ø {lengths.format_short(bent.most.diameter)}; in a real hole they "
         "give way more.",
         NOTE,
     )
@@ -503,10 +522,10 @@ MOST_NAME_LINES = 3
 MOVING: Mapping[Measure, MovingBlocks] = {"opening": OPENING, "stroke": CLAMPS, "tip": CLAMPS}
 
 
-def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
-    """All blocks of a sheet in reading order: those needed beside the plan, and the others."""
+def make_blocks(sheet: Sheet) -> tuple[list[Block], list[Block]]:
+    """Return all blocks of a sheet in reading order: those needed beside the plan, and the others."""
     if sheet.fixture.hold is not None:
-        return blocks_of_hold(sheet)
+        return make_hold_blocks(sheet)
     moving = MOVING[sheet.toolkit.moving.measure]
     needed: list[Writer] = [write_title, write_pegs, *moving.settings(sheet), write_zero]
     others: list[Writer] = [write_side, write_part, write_steps]
@@ -535,8 +554,10 @@ def blocks_of(sheet: Sheet) -> tuple[list[Block], list[Block]]:
     return list(map(bound, needed)), list(map(bound, others))
 
 
-def blocks_of_hold(sheet: Sheet) -> tuple[list[Block], list[Block]]:
-    """The blocks of a sheet of flat jaws: what to set, the view from the end, the force, zero and cautions first."""
+def make_hold_blocks(sheet: Sheet) -> tuple[list[Block], list[Block]]:
+    """Return the blocks of a sheet of flat jaws: what to set, the view from the end, the force, zero and
+    cautions first.
+    """
     setting, rest = hold_writers(sheet)
     needed = [write_title, *setting, write_zero, *([write_cautions] if sheet.cautions else [])]
     others = [*rest, *([write_program] if sheet.details.program is not None else []), write_part]
@@ -549,33 +570,33 @@ def blocks_of_hold(sheet: Sheet) -> tuple[list[Block], list[Block]]:
 
 def write_title(column: TextColumn, sheet: Sheet) -> None:
     size = next(
-        (s for s in NAME_SIZES if text_width(sheet.name, s, bold=True) <= column.width), NAME_SIZES[-1]
+        (s for s in NAME_SIZES if measure_text(sheet.name, s, bold=True) <= column.width), NAME_SIZES[-1]
     )
-    lines = wrapped(sheet.name, size, column.width, bold=True)
+    lines = wrap_text(sheet.name, size, column.width, bold=True)
     if len(lines) > MOST_NAME_LINES:
         rest = " ".join(lines[MOST_NAME_LINES - 1 :])
-        lines = [*lines[: MOST_NAME_LINES - 1], shortened(rest + "…", size, column.width, bold=True)]
+        lines = [*lines[: MOST_NAME_LINES - 1], shorten_text(rest + "…", size, column.width, bold=True)]
     for line in lines:
-        column.words(line, size, bold=True, gap=0.4)
+        column.write_line(line, size, bold=True, gap=0.4)
     column.y += 4
-    column.words(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
-    column.paragraph(fixture_words(sheet.fixture, sheet.toolkit), BODY)
+    column.write_line(f"Fixture {sheet.details.number} of {sheet.details.count}", 16, bold=True, gap=0.5)
+    column.write_paragraph(describe_fixture(sheet.fixture, sheet.toolkit), BODY)
     x0, y0, x1, y1 = sheet.workpiece.bounds
-    outside = f"{sheet.lengths.number(x1 - x0)} × {sheet.lengths.words(y1 - y0)}"
-    column.words(f"Size {outside}, as drawn", BODY, gap=0.3)
+    outside = f"{sheet.lengths.number(x1 - x0)} × {sheet.lengths.format_length(y1 - y0)}"
+    column.write_line(f"Size {outside}, as drawn", BODY, gap=0.3)
 
 
 def write_zero(column: TextColumn, sheet: Sheet) -> None:
     zero, lengths = sheet.zero, sheet.lengths
     (x, y), turn = sheet.zero_place, sheet.fixture.pose.written_deg
-    heading(column, "Part zero X0 Y0 and angle")
-    column.fact("X0 Y0 is the", zero.words, BODY, bold=True)
-    column.fact(f"x from {sheet.datum.x}", lengths.words(x), bold=True)
-    column.fact(f"y from {sheet.datum.y}", lengths.words(y), bold=True)
-    column.fact("turned by θ, counter-clockwise", degrees_text(turn, 4), bold=True)
-    drawn = ", y ".join(map(lengths.words, zero.point))
+    write_heading(column, "Part zero X0 Y0 and angle")
+    column.write_fact("X0 Y0 is the", zero.words, BODY, bold=True)
+    column.write_fact(f"x from {sheet.datum.x}", lengths.format_length(x), bold=True)
+    column.write_fact(f"y from {sheet.datum.y}", lengths.format_length(y), bold=True)
+    column.write_fact("turned by θ, counter-clockwise", format_degrees(turn, 4), bold=True)
+    drawn = ", y ".join(map(lengths.format_length, zero.point))
     place = "" if sheet.zero_shown else " It lies outside the plan."
-    column.paragraph(
+    column.write_paragraph(
         f"In the part's drawing the zero is at x {drawn}.{place} x runs to the right, y upward.", NOTE
     )
     # Haas takes three places behind the point (Mill Operator's Manual, G68).
@@ -584,38 +605,38 @@ def write_zero(column: TextColumn, sheet: Sheet) -> None:
     machine = sheet.details.machine_position
     if machine is None:
         words = f"G54: the machine's position over {sheet.datum.point}, plus this x and y; then {turning}."
-        column.paragraph(words, NOTE)
+        column.write_paragraph(words, NOTE)
         return
     gx, gy = (
         lengths.number(start + way).replace("−", "-") for start, way in zip(machine, (x, y), strict=True)
     )
     unit = "G20" if sheet.lengths.unit is INCH else "G21"
-    column.paragraph(
-        f"{sheet.datum.name} is at machine {' and '.join(map(lengths.words, machine))}, and x "
+    column.write_paragraph(
+        f"{sheet.datum.name} is at machine {' and '.join(map(lengths.format_length, machine))}, and x "
         "runs along the machine's X:",
         NOTE,
     )
     column.y += 3
-    column.words(f"{unit} G10 L2 P1 X{gx} Y{gy}", BODY, bold=True)
-    column.words(f"G54 {turning}" if float(word) else "G54", BODY, bold=True)
+    column.write_line(f"{unit} G10 L2 P1 X{gx} Y{gy}", BODY, bold=True)
+    column.write_line(f"G54 {turning}" if float(word) else "G54", BODY, bold=True)
 
 
 def write_cautions(column: TextColumn, sheet: Sheet) -> None:
-    heading(column, "Beware")
+    write_heading(column, "Beware")
     for caution in sheet.cautions:
-        column.item("▲", caution.sentence, BODY)
+        column.write_item("▲", caution.sentence, BODY)
 
 
 def write_steps(column: TextColumn, sheet: Sheet) -> None:
-    heading(column, "Setting up")
+    write_heading(column, "Setting up")
     given = "as given under part zero X0 Y0, or touch off the part there"
     zero = f"Set the machine's zero, G54, from {sheet.datum.name} {given}."
     steps = support_steps(sheet, MOVING[sheet.toolkit.moving.measure].steps(sheet))
     for number, step in enumerate([*steps, zero], 1):
-        column.item(f"{number}.", step, BODY)
+        column.write_item(f"{number}.", step, BODY)
 
 
 def write_legend(column: TextColumn, sheet: Sheet) -> None:
-    heading(column, "Signs")
+    write_heading(column, "Signs")
     of_supports = ((draw_pad, "support below the part"), (draw_tip, "clamp on top, presses down"))
     draw_legend(column, sheet.toolkit, BLACK, of_supports if sheet.details.supports is not None else ())

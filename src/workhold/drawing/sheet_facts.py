@@ -14,7 +14,7 @@ from attrs import evolve, field, frozen
 
 from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.scene import LengthUnit
-from workhold.drawing.seating_words import SeatingSentences, sentence
+from workhold.drawing.seating_words import SeatingSentences, capitalize_sentence
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT
@@ -45,13 +45,13 @@ __all__ = [
     "PAPERS",
     "Caution",
     "SheetDetails",
-    "caliper_check",
-    "cautions_of",
-    "edge_distances",
-    "lift_of",
-    "placing_of",
-    "result_cautions",
-    "result_details",
+    "choose_caliper_check",
+    "list_cautions",
+    "measure_edge_distances",
+    "find_part_lift",
+    "find_placing",
+    "list_result_cautions",
+    "collect_sheet_details",
 ]
 
 # Width and height in mm, upright: ISO 216 and ANSI/ASME Y14.1.
@@ -181,8 +181,9 @@ class CaliperCheck:
     placed: int
 
 
-def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
-    """The pair of holes, one in either carrier's column at the opening, to measure the opening between.
+def choose_caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
+    """Return the pair of holes, one in either carrier's column at the opening, to measure the opening
+    between.
 
     They are as level as possible, so that calipers held square to the plates span them; among those, with as
     many pegs of the fixture as possible, then the lowest. Columns at the opening are the first carrier's last
@@ -210,22 +211,23 @@ def caliper_check(fixture: Fixture, toolkit: Toolkit) -> CaliperCheck:
     return CaliperCheck((last, low), (0, high), distance, -placed)
 
 
-def edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
-    """Distances in mm of the pegs' centres from the ends of their contact features at an edge or another
-    face.
+def measure_edge_distances(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> list[float]:
+    """Return the distances in mm of the pegs' centres from the ends of their contact features at an edge or
+    another face.
 
     The nearer end counts; without any (a whole circle, tangent joints) the distance is infinite.
     """
     return [float(edge) for edge in Touched.of(workpiece, toolkit).of_fixture(fixture, toolkit).edges[0]]
 
 
-def cautions_of(
+def list_cautions(
     fixture: Fixture, toolkit: Toolkit, distances: Sequence[float], details: SheetDetails, lengths: LengthUnit
 ) -> list[Caution]:
-    """The cautions of ``statics.judging``, those about contacts first, and other ways to lie in the holes.
+    """Return the cautions of ``statics.judging``, those about contacts first, and other ways to lie in the
+    holes.
 
     These come from the seating where it is known. For the distances of the four contacts see
-    :func:`edge_distances`.
+    :func:`measure_edge_distances`.
     """
     found: list[Caution] = []
     margin, error = fixture.quality.get("closure_margin", inf), fixture.quality.get("location_error", 0.0)
@@ -244,7 +246,7 @@ def cautions_of(
         )
     for peg, distance in zip(fixture.pegs, distances, strict=True):
         if is_near_edge(distance):
-            place = f"{peg.hole} touches {peg.touching} only {lengths.words(distance)} from its end"
+            place = f"{peg.hole} touches {peg.touching} only {lengths.format_length(distance)} from its end"
             found.append(Caution("edge", f"{place}: a burr or a broken edge there shifts the part."))
     if is_weak(margin):
         weakest = min(fixture.pegs, key=lambda peg: peg.force)
@@ -259,7 +261,7 @@ def cautions_of(
         words = f"{largest.hole} pushes {largest.force:.1f} times as hard as {pushers}: tighten gently"
         found.append(Caution("amplification", f"{words}, because it may mark {largest.touching}."))
     if is_astray(error, off):
-        words = f"Pegs and faces within tolerance may still shift the part by {lengths.words(error)}"
+        words = f"Pegs and faces within tolerance may still shift the part by {lengths.format_length(error)}"
         found.append(Caution("location", f"{words}: probe it after clamping."))
     if details.bent is not None:
         of_pegs = details.bent.cautions(toolkit.moving.noun, lengths.unit)
@@ -272,17 +274,15 @@ def cautions_of(
         ]
         for number, case in sorted(lifting, key=lambda pair: -pair[1].needed.value)[:1]:
             name, peg = case.load.name or f"load {number}", fixture.pegs[case.needed.peg]
-            more = lengths.unit.force_above(case.needed.value)
-            words = (
-                f"Under {name}, {peg.hole} lets go at the {lengths.unit.force_words(details.jaw_force)} given"
-            )
+            more = lengths.unit.format_force_rounded_up(case.needed.value)
+            words = f"Under {name}, {peg.hole} lets go at the {lengths.unit.format_force(details.jaw_force)} given"
             found.append(Caution("load", f"{words}: clamp with more than {more} {lengths.unit.force}."))
     if details.cutting is not None and (details.cutting.room or 0.0) < 0.0:
         sentences = details.cutting.words(toolkit.moving.noun, lengths.unit, len(fixture.travels))
         found.append(Caution("load", " ".join(sentences[:2])))
     if details.seating is not None:
         seated = SeatingSentences(details.seating, fixture, toolkit, lengths)
-        return found + [Caution(kind, sentence) for kind, sentence in seated.cautions()]
+        return found + [Caution(kind, sentence) for kind, sentence in seated.list_cautions()]
     if details.others:
         holes = "holes" if toolkit.tips else "four holes"
         ways = "one other way" if details.others == 1 else f"{details.others} other ways"
@@ -295,25 +295,25 @@ def cautions_of(
     return found
 
 
-def placing_of(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
-    """Columns and rows by which a fixture of a result stands further on where it is asked to."""
+def find_placing(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
+    """Return the columns and rows by which a fixture of a result stands further on where it is asked to."""
     if at is None:
         return find_move_to_middle(fixture, result.toolkit, result.workpiece)
     return move_to(fixture, result.toolkit, at)
 
 
-def lift_of(supports: ChosenSupports | None, support_height: float | None) -> float:
-    """How far the part lies above the plates in mm: as high as its supports, or 0 without any."""
+def find_part_lift(supports: ChosenSupports | None, support_height: float | None) -> float:
+    """Return how far the part lies above the plates in mm: as high as its supports, or 0 without any."""
     if supports is None:
         return 0.0
     own = find_support_height(supports.supports.query.toolkit) if support_height is None else support_height
     return SUPPORT_HEIGHT if own is None else own
 
 
-def pressed_height(
+def find_pressed_height(
     thickness: float | None, peg_height: float | None, supports: ChosenSupports | None, lift: float
 ) -> float | None:
-    """The height up to which pegs press on a prism in mm; None where neither height is known.
+    """Return the height up to which pegs press on a prism in mm; None where neither height is known.
 
     The thickness is that of the part, or that which supports were asked for. The height of the pegs is above
     the plates, over which the part lies by ``lift``.
@@ -324,7 +324,7 @@ def pressed_height(
     return max(min(known), 0.0) if known else None
 
 
-def zero_to_set(
+def choose_zero_to_set(
     program: Program | None, workpiece: Workpiece, question: SheetQuestion, unit: Unit
 ) -> PartZero:
     """Return the part zero that the machinist sets: that of the program where there is one and none is asked for."""
@@ -343,7 +343,7 @@ def hold_details(
     count: int | None,
     listed_as: str,
 ) -> tuple[Fixture, SheetDetails]:
-    """The same of a fixture that flat jaws hold, which has no pegs to say anything of."""
+    """Return the same of a fixture that flat jaws hold, which has no pegs to say anything of."""
     query = result.query
     details = SheetDetails(
         number=rank if number is None else number,
@@ -352,7 +352,7 @@ def hold_details(
         result_hash=result_hash,
         version=__version__,
         unit=unit,
-        zero=zero_to_set(query.program, result.workpiece, question, unit),
+        zero=choose_zero_to_set(query.program, result.workpiece, question, unit),
         program=query.program,
         thickness=query.part_height,
         listed_as=listed_as,
@@ -361,18 +361,18 @@ def hold_details(
     return result[rank - 1], details
 
 
-def result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
-    """What the setup sheet of one fixture says to beware of; see :func:`result_details`."""
-    fixture, details = result_details(result, rank, **asked)
+def list_result_cautions(result: Result, rank: int, **asked: Any) -> list[Caution]:
+    """Return what the setup sheet of one fixture says to beware of; see :func:`collect_sheet_details`."""
+    fixture, details = collect_sheet_details(result, rank, **asked)
     if fixture.hold is not None:
         return [Caution(kind, words) for kind, words in hold_cautions(fixture.hold)]
     pitch = min(min(carrier.pitch) for carrier in result.toolkit.carriers)
-    lengths = LengthUnit.suiting(details.unit, pitch)
-    distances = edge_distances(fixture, result.workpiece, result.toolkit)
-    return cautions_of(fixture, result.toolkit, distances, details, lengths)
+    lengths = LengthUnit.from_typical_length(details.unit, pitch)
+    distances = measure_edge_distances(fixture, result.workpiece, result.toolkit)
+    return list_cautions(fixture, result.toolkit, distances, details, lengths)
 
 
-def result_details(
+def collect_sheet_details(
     result: Result,
     rank: int,
     *,
@@ -387,7 +387,7 @@ def result_details(
     listed_as: str = "Fixture",
     **asked: Any,
 ) -> tuple[Fixture, SheetDetails]:
-    """One fixture with all figures of quality, and the further details of its setup sheet.
+    """Return one fixture with all figures of quality, and the further details of its setup sheet.
 
     Parameters
     ----------
@@ -420,7 +420,7 @@ def result_details(
     known, not_seated = result[rank - 1].seating if seating is not False else None, ""
     if supports is not None and at is not None:
         supports = supports.standing_at(at)
-    move = placing_of(fixture, result, at) if supports is None else supports.recounted.move
+    move = find_placing(fixture, result, at) if supports is None else supports.recounted.move
     placed = move_fixture_by_holes(fixture, toolkit, move) if supports is None else supports.recounted.fixture
     if placed.pegs != fixture.pegs:
         # The readings of its seats would be those of other holes.
@@ -433,11 +433,11 @@ def result_details(
         try:
             known = Solver(workpiece, toolkit).of(fixture)
         except InputError as error:
-            not_seated = sentence(str(error))
+            not_seated = capitalize_sentence(str(error))
     program, reach = result.query.program, result.query.peg_height
     if peg_height is None and reach is not None:
         # The query's height is above where the part lies, the sheet's above the plates.
-        peg_height = reach + lift_of(supports, support_height)
+        peg_height = reach + find_part_lift(supports, support_height)
     cutting, passing = (
         find_cutting_need(result, rank - 1, jaw_force, jaw),
         find_nearest_passing(result, rank - 1),
@@ -449,12 +449,12 @@ def result_details(
         passing = passing.in_holes(*named)
     cases = load_cases(fixture, workpiece, toolkit, loads, jaw_force, friction, jaw)
     thickness = question.thickness or result.query.thickness
-    lift = lift_of(supports, support_height)
+    lift = find_part_lift(supports, support_height)
     bent = bent_pegs(
         fixture,
         workpiece,
         toolkit,
-        pressed_up_to=pressed_height(thickness, peg_height, supports, lift),
+        pressed_up_to=find_pressed_height(thickness, peg_height, supports, lift),
         jaw_force=jaw_force,
         lift=lift,
     )
@@ -469,9 +469,9 @@ def result_details(
         jaw_force=jaw_force,
         friction=friction,
         loads=cases,
-        zero=zero_to_set(program, workpiece, question, unit),
+        zero=choose_zero_to_set(program, workpiece, question, unit),
         peg_height=peg_height,
-        others=result.table.same_holes(rank - 1) if others is None else others,
+        others=result.table.count_in_same_holes(rank - 1) if others is None else others,
         why_first=why_first(result, unit) if rank == (number or 1) == 1 else "",
         seating=known,
         by_hand=put_in,

@@ -16,11 +16,11 @@ from functools import lru_cache
 from attrs import field, frozen
 
 from workhold.conventions import DOWEL_DEPTH, DOWEL_STANDOUT, SAME_HEIGHT
-from workhold.drawing.panel import FACT_NAME, TextColumn, pegs_words
-from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, text_width
+from workhold.drawing.panel import FACT_NAME, TextColumn, name_pegs
+from workhold.drawing.scene import BLACK, GREY, LengthUnit, Scene, measure_text
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.sheet_facts import Caution, SheetDetails, lift_of
-from workhold.errors import InputError, listed
+from workhold.drawing.sheet_facts import Caution, SheetDetails, find_part_lift
+from workhold.errors import InputError, join_words
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.setup_words import Datum
 from workhold.fixels.toolkit import Toolkit
@@ -45,14 +45,14 @@ __all__ = [
     "Sheet",
     "SheetHeights",
     "Writer",
-    "fact_or_field",
-    "heading",
-    "height_of",
-    "heights_of",
-    "inside_words",
-    "lies_words",
-    "peg_rows",
-    "usual_dowel",
+    "write_fact_or_field",
+    "write_heading",
+    "measure_block_height",
+    "find_sheet_heights",
+    "describe_pegs_in_holes",
+    "describe_lie",
+    "make_peg_rows",
+    "find_usual_dowel",
     "write_dowel",
     "write_flats",
 ]
@@ -105,15 +105,15 @@ class SheetHeights:
         top = self.thickness if self.head_room is None else self.peg_top + self.head_room
         return min(top, self.thickness)
 
-    def sure(self, name: str) -> str:
-        """What stands behind a height that was assumed, and nothing behind another one."""
+    def note_if_assumed(self, name: str) -> str:
+        """Return what stands behind a height that was assumed, and nothing behind another one."""
         return " (assumed)" if name in self.assumed else ""
 
 
-def heights_of(
+def find_sheet_heights(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
 ) -> SheetHeights | None:
-    """The heights of a set-up; None where nobody knows how thick the part is.
+    """Return the heights of a set-up; None where nobody knows how thick the part is.
 
     Refuses pegs that end below the part.
     """
@@ -125,7 +125,7 @@ def heights_of(
         thickness = solid.height
     if thickness is None:
         return None
-    lift = lift_of(supports, details.support_height)
+    lift = find_part_lift(supports, details.support_height)
     plate = THICKNESS if details.plate_thickness is None else details.plate_thickness
     if details.peg_height is not None:
         top = details.peg_height - lift
@@ -157,15 +157,15 @@ def heights_of(
         supported_by=lift,
         plate_thickness=plate,
         peg_length=length,
-        bands=bands_of_pegs(fixture, workpiece, details, thickness, top),
+        bands=find_peg_bands(fixture, workpiece, details, thickness, top),
         assumed=frozenset(name for name, is_so in is_assumed.items() if is_so),
-        clamped_height=clamped_at(supports, thickness),
+        clamped_height=find_clamped_height(supports, thickness),
         dowel=dowel,
     )
 
 
-def clamped_at(supports: ChosenSupports | None, thickness: float) -> float | None:
-    """The height of the face on which the clamp presses in mm; None without supports."""
+def find_clamped_height(supports: ChosenSupports | None, thickness: float) -> float | None:
+    """Return the height of the face on which the clamp presses in mm; None without supports."""
     if supports is None:
         return None
     request = supports.supports.request
@@ -173,10 +173,11 @@ def clamped_at(supports: ChosenSupports | None, thickness: float) -> float | Non
     return thickness if asked == request.thickness else min(asked, thickness)
 
 
-def bands_of_pegs(
+def find_peg_bands(
     fixture: Fixture, workpiece: Workpiece, details: SheetDetails, thickness: float, top: float
 ) -> tuple[Band | None, ...]:
-    """The heights at which each peg may press: as supports were asked for, of the solid, or of a prism.
+    """Return the heights at which each peg may press: as supports were asked for, of the solid, or of a
+    prism.
 
     Nothing presses above the top of the pegs.
     """
@@ -283,112 +284,115 @@ class MovingBlocks:
 
 # A layout asks for each block in each width many times; a sheet has some hundred of these.
 @lru_cache(maxsize=256)
-def height_of(block: Block, width: float) -> float:
-    """Height of a block in a column of a width, page units."""
+def measure_block_height(block: Block, width: float) -> float:
+    """Return the height of a block in a column of a width, page units."""
     column = TextColumn(Scene(ET.Element("g")), 0.0, 0.0, width)
     block(column)
     return column.y
 
 
-def heading(column: TextColumn, words: str) -> None:
-    """Writes the heading of a block below a line."""
-    column.rule(1.4)
-    column.words(words, HEADING, bold=True, gap=0.65)
+def write_heading(column: TextColumn, words: str) -> None:
+    """Write the heading of a block below a line."""
+    column.draw_rule(1.4)
+    column.write_line(words, HEADING, bold=True, gap=0.65)
 
 
-def fact_or_field(column: TextColumn, name: str, value: str | None) -> None:
-    """Writes a fact, or where it is not known a line to write it on."""
+def write_fact_or_field(column: TextColumn, name: str, value: str | None) -> None:
+    """Write a fact, or where it is not known a line to write it on."""
     if value is not None:
-        column.fact(name, value, bold=True)
+        column.write_fact(name, value, bold=True)
         return
     column.y += 0.75 * HEADING
-    column.scene.text((column.x, column.y), name, FACT_NAME, fill=GREY, middle=False)
+    column.scene.add_text((column.x, column.y), name, FACT_NAME, fill=GREY, middle=False)
     least, most = FIELD
     right = column.x + column.width
-    room = column.width - text_width(name, FACT_NAME) - 10
-    column.scene.line(
+    room = column.width - measure_text(name, FACT_NAME) - 10
+    column.scene.add_line(
         [(right - min(max(room, least), most), column.y + 2), (right, column.y + 2)], BLACK, 0.8
     )
     column.y += 0.62 * HEADING
 
 
-def peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
-    """The table of the pegs: its header, its rows, and what the forces in it are, up to "of"."""
+def make_peg_rows(sheet: Sheet) -> tuple[list[str], list[list[str]], str]:
+    """Return the table of the pegs: its header, its rows, and what the forces in it are, up to "of"."""
     force, unit, number = sheet.details.jaw_force, sheet.lengths.unit, sheet.lengths.number
     per = "N per kN" if unit.newtons == 1 else f"per {KILO:.0f} {unit.force}"
     flats = FLAT_PIN in sheet.toolkit.contacts
     header = ["Hole", "face", *["flat"] * flats, f"x {sheet.lengths.sign}", f"y {sheet.lengths.sign}", per]
     if force is not None:
-        header.append(f"at {unit.force_alone(force)}")
+        header.append(f"at {unit.format_force_alone(force)}")
     rows = []
     for name, peg in zip(name_contacts(sheet.fixture, sheet.toolkit), sheet.fixture.pegs, strict=True):
         looks = "–" if peg.flat_deg is None else f"{peg.flat_deg:.2f}°"
         row = [name, peg.touched, *[looks] * flats, number(peg.x), number(peg.y), f"{KILO * peg.force:.0f}"]
-        rows.append(row if force is None else [*row, unit.force_alone(force * peg.force)])
+        rows.append(row if force is None else [*row, unit.format_force_alone(force * peg.force)])
     each = "kN" if unit.newtons == 1 else f"{KILO:.0f} {unit.force}"
-    return header, rows, f"{per}: {unit.force} of the {pegs_words(sheet.toolkit)} on the part for each {each}"
+    return header, rows, f"{per}: {unit.force} of the {name_pegs(sheet.toolkit)} on the part for each {each}"
 
 
 def write_flats(column: TextColumn, sheet: Sheet) -> None:
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
-        column.paragraph(
+        column.write_paragraph(
             "flat: which way it looks, counter-clockwise from +x; it is "
-            f"{sheet.lengths.short(flat.distance)} from the centre. Turn the peg until its flat lies on the "
+            f"{sheet.lengths.format_short(flat.distance)} from the centre. Turn the peg until its flat lies on the "
             "part.",
             NOTE,
         )
 
 
-def lies_words(sheet: Sheet) -> str:
-    """How the part lies beside its drawing."""
+def describe_lie(sheet: Sheet) -> str:
+    """Return how the part lies beside its drawing."""
     turn = f"{sheet.fixture.pose.written_deg:z.1f}"
     way = "clockwise" if turn.startswith("-") else "counter-clockwise"
     return f"turned {turn.removeprefix('-')}° {way} from its drawing" if float(turn) else "not turned"
 
 
-def inside_words(sheet: Sheet) -> str:
-    """Which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
+def describe_pegs_in_holes(sheet: Sheet) -> str:
+    """Return which pegs stand in holes of the part, a sentence behind another one; nothing where none does."""
     faces = sheet.workpiece.numbered.inside
     inside = [peg.hole for peg in sheet.fixture.pegs if peg.face in faces]
     return (
-        f" {listed(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part."
+        f" {join_words(inside)} {'stand' if len(inside) > 1 else 'stands'} inside a hole of the part."
         if inside
         else ""
     )
 
 
 def write_dowel(column: TextColumn, sheet: Sheet) -> None:
-    """Writes what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
+    """Write what the pegs are, how they sit in their holes and how far they stand out, or fields for it."""
     details, lengths, fit = sheet.details, sheet.lengths, sheet.details.tolerance.fit
     column.y += 3
-    fact_or_field(column, "dowel and fit", sheet.dowel)
+    write_fact_or_field(column, "dowel and fit", sheet.dowel)
     if fit is not None:
         pin, hole_limits = (
-            f"{lengths.short_number(low)} to {lengths.short(high)}" for low, high in (fit.pin, fit.hole)
+            f"{lengths.format_short_number(low)} to {lengths.format_short(high)}"
+            for low, high in (fit.pin, fit.hole)
         )
-        column.paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
+        column.write_paragraph(f"Pin of {pin} in a hole of {hole_limits}.", NOTE)
     known, peg, above = sheet.heights, sheet.toolkit.plates[0].peg, f"height above the {sheet.plates_noun}"
     if known is None or "peg_top" in known.assumed:
         for name, size in ((f"{peg} length", details.peg_length), (above, details.peg_height)):
-            fact_or_field(column, name, None if size is None else lengths.words(size))
-        usual = None if known is None else usual_dowel(sheet, known)
+            write_fact_or_field(column, name, None if size is None else lengths.format_length(size))
+        usual = None if known is None else find_usual_dowel(sheet, known)
         if usual is not None:
-            words = f"Dowels of {usual.name} would do: they stand out {lengths.words(usual.standout)}."
-            column.paragraph(words, NOTE)
+            words = (
+                f"Dowels of {usual.name} would do: they stand out {lengths.format_length(usual.standout)}."
+            )
+            column.write_paragraph(words, NOTE)
         return
     if known.dowel is not None:
         noun = sheet.toolkit.plates[0].noun
-        column.fact(f"{peg}s: dowels of", known.dowel.name, bold=True)
-        column.fact(f"each sits in the {noun}", lengths.words(known.dowel.depth), bold=True)
+        column.write_fact(f"{peg}s: dowels of", known.dowel.name, bold=True)
+        column.write_fact(f"each sits in the {noun}", lengths.format_length(known.dowel.depth), bold=True)
     else:
         at_least = " at least" if "peg_length" in known.assumed else ""
-        column.fact(f"{peg} length{at_least}", lengths.words(known.peg_length), bold=True)
-    column.fact(above, lengths.words(known.above_plate), bold=True)
+        column.write_fact(f"{peg} length{at_least}", lengths.format_length(known.peg_length), bold=True)
+    column.write_fact(above, lengths.format_length(known.above_plate), bold=True)
 
 
-def usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
-    """The dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
+def find_usual_dowel(sheet: Sheet, heights: SheetHeights) -> SoldDowel | None:
+    """Return the dowel that is no higher than it must be beside a prism; None where none is sold that is not higher."""
     diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT
     low = [one for one in standouts(diameter) if one <= usual]

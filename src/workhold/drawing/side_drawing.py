@@ -12,16 +12,16 @@ from itertools import pairwise
 
 from attrs import frozen
 
-from workhold.drawing.annotation import dimension_line
+from workhold.drawing.annotation import draw_dimension_line
 from workhold.drawing.bench import PART_FILL, PEG_FILL, TOUCHED
 from workhold.drawing.carriers import FENCE, SLIDING, STILL
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.scene import BLACK, GREY, UNITS_PER_MM, Box, LengthUnit, Scene, View, text_width
+from workhold.drawing.scene import BLACK, GREY, UNITS_PER_MM, Box, LengthUnit, Scene, View, measure_text
 from workhold.drawing.sheet_writing import NOTE
 from workhold.drawing.side_view import SideContact, SideView
 from workhold.drawing.supports_drawn import SUPPORT
 
-__all__ = ["SideFigure", "moved_apart"]
+__all__ = ["SideFigure", "move_apart"]
 
 TITLE, TITLE_ROOM, NOTE_GAP = 14.0, 34.0, 8.0
 # Room above the part without and with a clamp on top, and below the plates for names, page units.
@@ -88,7 +88,7 @@ class SideFigure:
     @property
     def dimensions(self) -> list[tuple[float, float, str]]:
         """Lengths to dimension: from and to which height, and words. The last stands outermost."""
-        heights, words = self.view.heights, self.lengths.words
+        heights, words = self.view.heights, self.lengths.format_length
         low, found = -heights.supported_by, list[tuple[float, float, str]]()
         if heights.supported_by:
             found.append((low, 0.0, f"supports {words(heights.supported_by)}"))
@@ -100,12 +100,12 @@ class SideFigure:
     def left_room(self) -> float:
         """Room for the dimensions, page units."""
         lines = self.dimensions
-        return OUT + BETWEEN * len(lines) + BEND + max(text_width(words, WORDS) for _, _, words in lines)
+        return OUT + BETWEEN * len(lines) + BEND + max(measure_text(words, WORDS) for _, _, words in lines)
 
     @property
     def right_room(self) -> float:
         """Room for the heights of levels, page units."""
-        return BEND + 8 + max(text_width(words, WORDS) for _, words in self.levels)
+        return BEND + 8 + max(measure_text(words, WORDS) for _, words in self.levels)
 
     @property
     def top_room(self) -> float:
@@ -118,7 +118,7 @@ class SideFigure:
 
     @property
     def notes(self) -> list[str]:
-        heights, words = self.view.heights, self.lengths.words
+        heights, words = self.view.heights, self.lengths.format_length
         notes = [
             "Heights above the plane on which the part lies, in "
             f"{'inches' if self.lengths.sign == 'in' else self.lengths.sign}."
@@ -151,8 +151,8 @@ class SideFigure:
             notes.append(f"Assumed, because no value is given: {'; '.join(assumed)}.")
         return notes
 
-    def largest(self, width: float, most: float, plan: float) -> float:
-        """The largest factor of a scale, paper over model, with room that is not far from the plan's.
+    def compute_largest_scale(self, width: float, most: float, plan: float) -> float:
+        """Return the largest factor of a scale, paper over model, with room that is not far from the plan's.
 
         Parameters
         ----------
@@ -164,72 +164,78 @@ class SideFigure:
         high = (most - self.top_room - NAMES_ROOM) / extent.height
         return min(LARGER * plan, across / UNITS_PER_MM, high / UNITS_PER_MM)
 
-    def height(self, width: float, factor: float) -> float:
-        """The height of all of it in a box of a width, page units, at a scale of a factor."""
-        notes = TextColumn(Scene.page((1.0, 1.0), ""), 0.0, 0.0, width)
-        notes.paragraph(" ".join(self.notes), NOTE)
+    def compute_height(self, width: float, factor: float) -> float:
+        """Return the height of all of it in a box of a width, page units, at a scale of a factor."""
+        notes = TextColumn(Scene.make_page((1.0, 1.0), ""), 0.0, 0.0, width)
+        notes.write_paragraph(" ".join(self.notes), NOTE)
         drawn = self.view.extent.height * factor * UNITS_PER_MM
         return self.top_room + drawn + NAMES_ROOM + (notes.y + NOTE_GAP)
 
     def draw(self, scene: Scene, box: Box, name: str, factor: float) -> None:
-        """Draws all of it into a page box of at least its height, at a scale of a name and a factor."""
+        """Draw all of it into a page box of at least its height, at a scale of a name and a factor."""
         head = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
-        head.rule(1.4)
-        head.words(f"{self.title}, scale {name}", TITLE, bold=True)
+        head.draw_rule(1.4)
+        head.write_line(f"{self.title}, scale {name}", TITLE, bold=True)
         scale, extent = factor * UNITS_PER_MM, self.view.extent
         room = box.width - self.left_room - self.right_room
         left = box.x0 + self.left_room + (room - scale * extent.width) / 2
         page = View(scale, left - scale * extent.x0, box.y0 + self.top_room + scale * extent.y1)
-        drawn = page.box(extent)
+        drawn = page.map_box(extent)
         self.draw_levels(scene.group("levels"), page, drawn)
         self.draw_bodies(scene.group("side", page), page)
         self.draw_dimensions(scene.group("heights"), page, drawn)
         self.draw_names(scene.group("names"), page, Box(box.x0, drawn.y0, box.x1, drawn.y1))
         foot = TextColumn(scene.group("words"), box.x0, drawn.y1 + NAMES_ROOM, box.width)
-        foot.paragraph(" ".join(self.notes), NOTE)
+        foot.write_paragraph(" ".join(self.notes), NOTE)
 
     def draw_bodies(self, scene: Scene, page: View) -> None:
-        """Draws plates, pegs, supports, the part, clamps and walls, those behind the part first."""
+        """Draw plates, pegs, supports, the part, clamps and walls, those behind the part first."""
         view, heights = self.view, self.view.heights
         low = -heights.supported_by
         for span in view.plates:
             fill, edge = STILL
-            scene.rectangle(
-                page.box(Box(span[0], low - heights.plate_thickness, span[1], low)), fill, edge, 1.4
+            scene.add_rectangle(
+                page.map_box(Box(span[0], low - heights.plate_thickness, span[1], low)), fill, edge, 1.4
             )
         for one in view.contacts:
             if one.is_hidden:
                 self.draw_contact(scene, page, one)
         for pad in view.pads:
-            box = page.box(Box(pad.at - view.pad_radius, low, pad.at + view.pad_radius, 0.0))
-            scene.rectangle(box, SUPPORT, BLACK, 1.0)
+            box = page.map_box(Box(pad.at - view.pad_radius, low, pad.at + view.pad_radius, 0.0))
+            scene.add_rectangle(box, SUPPORT, BLACK, 1.0)
         self.draw_part(scene, page)
         for one in view.contacts:
             if not one.is_hidden:
                 self.draw_contact(scene, page, one)
         for span in view.walls:
             begin, top = view.wall_heights or (0.0, heights.peg_top)
-            box = page.box(Box(span[0], begin or low, span[1], top))
-            scene.path(outline(box), FENCE[1], 1.2, FENCE[0], fill_opacity="0.5", **{"class": "fence"})
+            box = page.map_box(Box(span[0], begin or low, span[1], top))
+            scene.add_path(
+                make_box_path(box), FENCE[1], 1.2, FENCE[0], fill_opacity="0.5", **{"class": "fence"}
+            )
         for one in view.contacts:
             self.draw_band(scene, page, one)
         if view.clamp is not None:
             self.draw_top_clamp(scene, page)
 
     def draw_part(self, scene: Scene, page: View) -> None:
-        """Draws the part as far as it is known; what is not stands in dashes."""
+        """Draw the part as far as it is known; what is not stands in dashes."""
         view, heights = self.view, self.view.heights
-        known = page.box(Box(view.part[0], 0.0, view.part[1], heights.known_up_to))
-        scene.path(outline(known), BLACK, 1.8, PART_FILL, fill_opacity="0.82", **{"class": "part-side"})
+        known = page.map_box(Box(view.part[0], 0.0, view.part[1], heights.known_up_to))
+        scene.add_path(
+            make_box_path(known), BLACK, 1.8, PART_FILL, fill_opacity="0.82", **{"class": "part-side"}
+        )
         if heights.known_up_to < heights.thickness:
-            rest = page.box(Box(view.upper[0], heights.known_up_to, view.upper[1], heights.thickness))
+            rest = page.map_box(Box(view.upper[0], heights.known_up_to, view.upper[1], heights.thickness))
             # Without a border: of a dome nothing stands in the corners.
-            scene.path(outline(rest), PART_FILL, 0.0, PART_FILL, fill_opacity="0.4", **{"class": "unknown"})
+            scene.add_path(
+                make_box_path(rest), PART_FILL, 0.0, PART_FILL, fill_opacity="0.4", **{"class": "unknown"}
+            )
             for (low, high), height in view.tops:
                 ends = [page((low, height)), page((high, height))]
-                scene.line(ends, BLACK, 1.4, stroke_dasharray="7 4", **{"class": "upper-face"})
+                scene.add_line(ends, BLACK, 1.4, stroke_dasharray="7 4", **{"class": "upper-face"})
         for low, high in view.feet:
-            scene.line([page((low, 0.0)), page((high, 0.0))], BLACK, 3.4, **{"class": "foot-face"})
+            scene.add_line([page((low, 0.0)), page((high, 0.0))], BLACK, 3.4, **{"class": "foot-face"})
 
     def draw_contact(self, scene: Scene, page: View, one: SideContact) -> None:
         heights = self.view.heights
@@ -238,46 +244,48 @@ class SideFigure:
         radius = max(one.radius, THINNEST / page.scale / 2)
         if one.is_clamp:
             ends = [one.at] if one.hole is None else [one.at, one.hole]
-            box = page.box(Box(min(ends) - radius, low, max(ends) + radius, top))
-            scene.rectangle(box, SLIDING[0], SLIDING[1], 1.2, 2.0)
-            middle = page.box(Box(one.at - radius, low, one.at + radius, top)).center[0]
-            scene.line([(middle, box.y0), (middle, box.y1)], SLIDING[1], 0.8, stroke_dasharray="8 2 2 2")
+            box = page.map_box(Box(min(ends) - radius, low, max(ends) + radius, top))
+            scene.add_rectangle(box, SLIDING[0], SLIDING[1], 1.2, 2.0)
+            middle = page.map_box(Box(one.at - radius, low, one.at + radius, top)).center[0]
+            scene.add_line([(middle, box.y0), (middle, box.y1)], SLIDING[1], 0.8, stroke_dasharray="8 2 2 2")
             return
-        box = page.box(Box(one.at - radius, low, one.at + radius, top))
-        scene.rectangle(box, PEG_FILL, BLACK, 1.0)
-        foot = page.box(Box(one.at - radius, heights.peg_top - heights.peg_length, one.at + radius, low))
+        box = page.map_box(Box(one.at - radius, low, one.at + radius, top))
+        scene.add_rectangle(box, PEG_FILL, BLACK, 1.0)
+        foot = page.map_box(Box(one.at - radius, heights.peg_top - heights.peg_length, one.at + radius, low))
         if not begin and foot.y1 > foot.y0:
-            scene.path(outline(foot), PEG_FILL, 0.9, stroke_dasharray="4 2.5", **{"class": "peg-foot"})
+            scene.add_path(
+                make_box_path(foot), PEG_FILL, 0.9, stroke_dasharray="4 2.5", **{"class": "peg-foot"}
+            )
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
         if one.band is None:
             return
         ends = [page((one.touches, height)) for height in one.band]
-        scene.line(ends, TOUCHED, 6.0, **{"class": "band"})
-        scene.line(ends, BLACK, 1.2)
+        scene.add_line(ends, TOUCHED, 6.0, **{"class": "band"})
+        scene.add_line(ends, BLACK, 1.2)
 
     def draw_top_clamp(self, scene: Scene, page: View) -> None:
         assert self.view.clamp is not None
         x, y = page((self.view.clamp, self.view.clamped_height))
         stem = page((self.view.clamp, self.highest))[1] - HEAD
         half = max(self.view.tip_radius * page.scale, 4.0)
-        scene.arrow((x, min(stem, y - HEAD) - STEM), (x, y - HEAD), SUPPORT, 3.0, 14)
-        scene.rectangle(Box(x - half, y - HEAD, x + half, y), "#ffffff", SUPPORT, 1.8, 2.0)
+        scene.add_arrow((x, min(stem, y - HEAD) - STEM), (x, y - HEAD), SUPPORT, 3.0, 14)
+        scene.add_rectangle(Box(x - half, y - HEAD, x + half, y), "#ffffff", SUPPORT, 1.8, 2.0)
 
     def draw_levels(self, scene: Scene, page: View, drawn: Box) -> None:
         levels = self.levels
         wanted = [page((0.0, height))[1] for height, _ in levels]
         low, high = drawn.y0 - ABOVE - HEIGHT_OF_LINE, drawn.y1 + NAMES_ROOM - 12
-        places = moved_apart(wanted, [HEIGHT_OF_LINE] * len(levels), 1.0, low, high)
+        places = move_apart(wanted, [HEIGHT_OF_LINE] * len(levels), 1.0, low, high)
         for (_, words), y, at in zip(levels, wanted, places, strict=True):
             right = drawn.x1 + 8
-            scene.line([(drawn.x0 - OUT - 6, y), (right, y), (right + BEND - 6, at)], LEVEL, 0.7)
-            scene.text((right + BEND - 2, at), words, WORDS)
+            scene.add_line([(drawn.x0 - OUT - 6, y), (right, y), (right + BEND - 6, at)], LEVEL, 0.7)
+            scene.add_text((right + BEND - 2, at), words, WORDS)
 
     def draw_dimensions(self, scene: Scene, page: View, drawn: Box) -> None:
         lines = self.dimensions
         wanted = [page((0.0, (start + end) / 2))[1] for start, end, _ in lines]
-        places = moved_apart(
+        places = move_apart(
             wanted, [HEIGHT_OF_LINE] * len(lines), 1.0, drawn.y0 - CLAMP_ROOM, drawn.y1 + NAMES_ROOM
         )
         left = drawn.x0 - OUT - BETWEEN * len(lines)
@@ -285,14 +293,14 @@ class SideFigure:
             x = drawn.x0 - OUT - BETWEEN * number
             low, high = page((0.0, start))[1], page((0.0, end))[1]
             for y in (low, high):
-                scene.line([(drawn.x0 - 4, y), (x - 4, y)], BLACK, 0.6)
-            dimension_line(scene, (x, low), (x, high), TIGHT, OUTSIDE, 9)
-            scene.line([(x, middle), (left, middle), (left - BEND + 8, at)], BLACK, 0.6)
-            scene.circle((x, middle), 1.8, BLACK)
-            scene.text((left - BEND + 4, at), words, WORDS, "end")
+                scene.add_line([(drawn.x0 - 4, y), (x - 4, y)], BLACK, 0.6)
+            draw_dimension_line(scene, (x, low), (x, high), TIGHT, OUTSIDE, 9)
+            scene.add_line([(x, middle), (left, middle), (left - BEND + 8, at)], BLACK, 0.6)
+            scene.add_circle((x, middle), 1.8, BLACK)
+            scene.add_text((left - BEND + 4, at), words, WORDS, "end")
 
     def draw_names(self, scene: Scene, page: View, row: Box) -> None:
-        """Writes names below the plates, each with a line that leads to it; those of one place together."""
+        """Write names below the plates, each with a line that leads to it; those of one place together."""
         view = self.view
         found: dict[tuple[float, str], list[str]] = {}
         for one in view.contacts:
@@ -303,27 +311,28 @@ class SideFigure:
         named = sorted(found.items())
         words = [", ".join(names) for _, names in named]
         wanted = [at for (at, _), _ in named]
-        sizes = [text_width(name, NAMES, bold=True) for name in words]
-        places = moved_apart(wanted, sizes, NAME_GAP, row.x0, row.x1)
+        sizes = [measure_text(name, NAMES, bold=True) for name in words]
+        places = move_apart(wanted, sizes, NAME_GAP, row.x0, row.x1)
         y = row.y1 + 30
         for ((at, colour), _), name, middle in zip(named, words, places, strict=True):
-            scene.line([(at, row.y1 + 2), (at, row.y1 + 8), (middle, y - 9)], colour, 0.8)
-            scene.text((middle, y), name, NAMES, "middle", bold=True, fill=colour)
+            scene.add_line([(at, row.y1 + 2), (at, row.y1 + 8), (middle, y - 9)], colour, 0.8)
+            scene.add_text((middle, y), name, NAMES, "middle", bold=True, fill=colour)
         if view.clamp is not None:
             x, top = page((view.clamp, self.highest))
-            scene.text((x + 12, top - STEM), "clamp on top", NAMES, bold=True, fill=SUPPORT, halo=2.5)
+            scene.add_text((x + 12, top - STEM), "clamp on top", NAMES, bold=True, fill=SUPPORT, halo=2.5)
 
 
-def outline(box: Box) -> str:
-    """SVG path data of a box."""
+def make_box_path(box: Box) -> str:
+    """Return SVG path data of a box."""
     corners = ((box.x0, box.y0), (box.x1, box.y0), (box.x1, box.y1), (box.x0, box.y1))
     return "M" + "L".join(f"{x:.3f} {y:.3f}" for x, y in corners) + "Z"
 
 
-def moved_apart(
+def move_apart(
     wanted: Sequence[float], sizes: Sequence[float], gap: float, low: float, high: float
 ) -> list[float]:
-    """The middles of names of some sizes on a line, ``gap`` apart, nearest to the places that are wanted.
+    """Return the middles of names of some sizes on a line, ``gap`` apart, nearest to the places that are
+    wanted.
 
     Names keep their order. Where all of them do not fit between ``low`` and ``high`` they begin at ``low``.
     The sum of squares of the moves is least: runs of names that touch move together (pool adjacent
@@ -331,7 +340,7 @@ def moved_apart(
 
     Examples
     --------
-    >>> moved_apart([10.0, 10.0, 60.0], [10.0, 10.0, 10.0], 2.0, -9.0, 100.0)
+    >>> move_apart([10.0, 10.0, 60.0], [10.0, 10.0, 10.0], 2.0, -9.0, 100.0)
     [4.0, 16.0, 60.0]
     """
     order = sorted(range(len(wanted)), key=lambda k: (wanted[k], k))

@@ -18,7 +18,7 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.drawing.bench import Bench, contact_of
+from workhold.drawing.bench import Bench, find_contact
 from workhold.drawing.scene import View
 from workhold.drawing.sheet_writing import SheetHeights
 from workhold.fixels.contacts import CLAMP_TIP
@@ -28,7 +28,7 @@ from workhold.model.solid import Band
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["SideContact", "SidePad", "SideView", "side_view"]
+__all__ = ["SideContact", "SidePad", "SideView", "choose_side_view"]
 
 Span = tuple[float, float]
 # Points along the outline stand at most so far apart, as a share of the part's extent.
@@ -52,13 +52,13 @@ class ViewWay:
     right: Point
     towards: Point
 
-    def across(self, point: Point) -> float:
-        """Where a point of the plan is across the view."""
+    def project(self, point: Point) -> float:
+        """Return where a point of the plan is across the view."""
         return point[0] * self.right[0] + point[1] * self.right[1]
 
-    def span(self, box: Box) -> Span:
-        """How far a box of the plan reaches across the view."""
-        ends = [self.across(corner) for corner in ((box.x0, box.y0), (box.x1, box.y1))]
+    def project_box(self, box: Box) -> Span:
+        """Return how far a box of the plan reaches across the view."""
+        ends = [self.project(corner) for corner in ((box.x0, box.y0), (box.x1, box.y1))]
         return min(ends), max(ends)
 
 
@@ -154,22 +154,24 @@ class SideView:
         return Box(min(a for a, _ in spans), low, max(b for _, b in spans), high)
 
 
-def side_view(
+def choose_side_view(
     bench: Bench,
     workpiece: Workpiece,
     heights: SheetHeights,
     supports: ChosenSupports | None = None,
 ) -> SideView:
-    """The view in which most pegs stand apart, by the widest least distance, with no wall before the part."""
-    way = max(WAYS, key=lambda one: (sees_past_walls(bench, one), *apart(bench, one), -WAYS.index(one)))
-    pose, (x0, x1) = bench.fixture.pose, way.span(bench.shown.part)
+    """Return the view in which most pegs stand apart, by the widest least distance, with no wall before the part."""
+    way = max(
+        WAYS, key=lambda one: (sees_past_walls(bench, one), *measure_peg_spread(bench, one), -WAYS.index(one))
+    )
+    pose, (x0, x1) = bench.fixture.pose, way.project_box(bench.shown.part)
     pads, request = ((), None) if supports is None else (supports.pads, supports.supports.request)
-    placed = [SidePad(pad.hole, way.across(pose.apply(pad.x, pad.y))) for pad in pads]
+    placed = [SidePad(pad.hole, way.project(pose.apply(pad.x, pad.y))) for pad in pads]
     solid = workpiece.solid
     tops, feet = (
         ([], [])
         if solid is None
-        else (spans_of(loops or (), bench, way) for loops in (solid.top, solid.bottom))
+        else (collect_spans(loops or (), bench, way) for loops in (solid.top, solid.bottom))
     )
     levels: dict[float, list[Sequence[Sequence[float]]]] = {}
     if solid is not None:
@@ -182,46 +184,46 @@ def side_view(
         part=(x0, x1),
         upper=(min([x0, *(a for a, _ in tops)]), max([x1, *(b for _, b in tops)])),
         feet=tuple(feet or [(x0, x1)]),
-        plates=tuple(merged(way.span(one.plate) for one in bench.shown.carriers)),
-        walls=tuple(way.span(one.bar) for one in bench.shown.walls),
-        contacts=tuple(contacts(bench, way, heights)),
+        plates=tuple(merge_spans(way.project_box(one.plate) for one in bench.shown.carriers)),
+        walls=tuple(way.project_box(one.bar) for one in bench.shown.walls),
+        contacts=tuple(list_side_contacts(bench, way, heights)),
         pads=tuple(placed),
         pad_radius=0.0 if request is None else request.pad_radius,
-        clamp=None if supports is None else way.across(pose.apply(*supports.clamp.at)),
+        clamp=None if supports is None else way.project(pose.apply(*supports.clamp.at)),
         tip_radius=0.0 if request is None else request.tip_radius,
         clamped_height=heights.thickness if heights.clamped_height is None else heights.clamped_height,
         tops=tuple(
             (span, height)
             for height, loops in sorted(levels.items())
             if height > heights.known_up_to
-            for span in spans_of(loops, bench, way)
+            for span in collect_spans(loops, bench, way)
         ),
         wall_heights=next((wall.carrier.heights for wall in bench.shown.walls), None),
     )
 
 
 def sees_past_walls(bench: Bench, way: ViewWay) -> bool:
-    """Whether no wall covers most of the part."""
-    low, high = way.span(bench.shown.part)
-    walls = [way.span(wall.bar) for wall in bench.shown.walls]
+    """Return whether no wall covers most of the part."""
+    low, high = way.project_box(bench.shown.part)
+    walls = [way.project_box(wall.bar) for wall in bench.shown.walls]
     return all(min(high, b) - max(low, a) < 0.5 * (high - low) for a, b in walls)
 
 
-def apart(bench: Bench, way: ViewWay) -> tuple[int, float]:
-    """How many pegs stand beside their neighbours rather than over them, and the least distance of these."""
+def measure_peg_spread(bench: Bench, way: ViewWay) -> tuple[int, float]:
+    """Return how many pegs stand beside their neighbours rather than over them, and the least distance of these."""
     pegs = [bench.fixture.pegs[k] for k in bench.placed]
     places = sorted(
-        (way.across((peg.x, peg.y)), bench.toolkit.carrier(peg.carrier).peg_radius) for peg in pegs
+        (way.project((peg.x, peg.y)), bench.toolkit.find_carrier(peg.carrier).peg_radius) for peg in pegs
     )
     gaps = [right - left - r - s for (left, r), (right, s) in pairwise(places)]
     clear = [gap for gap in gaps if gap > 0]
     return len(clear), round(min(clear, default=0.0), 6)
 
 
-def merged(spans: Iterable[Span]) -> list[Span]:
-    """Spans without overlaps, from left to right.
+def merge_spans(spans: Iterable[Span]) -> list[Span]:
+    """Return the spans without overlaps, from left to right.
 
-    >>> merged([(5, 9), (0, 3), (2, 4)])
+    >>> merge_spans([(5, 9), (0, 3), (2, 4)])
     [(0, 4), (5, 9)]
     """
     out: list[Span] = []
@@ -233,51 +235,51 @@ def merged(spans: Iterable[Span]) -> list[Span]:
     return out
 
 
-def spans_of(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way: ViewWay) -> list[Span]:
-    """Spans of level faces, given as loops in the part's coordinates, without overlaps."""
+def collect_spans(loops: Iterable[Sequence[Sequence[float]]], bench: Bench, way: ViewWay) -> list[Span]:
+    """Return the spans of level faces, given as loops in the part's coordinates, without overlaps."""
     found = []
     for number, loop in enumerate(loops):
         rows = [list(vertex) for vertex in loop]
         vertices = check_vertices(rows, f"face {number}", lambda side: f"side {side}")
         placed = map(bench.fixture.pose.carry, loop_segments(vertices))
-        places = [way.across(one.at(share * one.half_extent)) for one in placed for share in SHARES]
+        places = [way.project(one.at(share * one.half_extent)) for one in placed for share in SHARES]
         found.append((min(places), max(places)))
-    return merged(found)
+    return merge_spans(found)
 
 
 SHARES = tuple(np.linspace(-1.0, 1.0, 33).tolist())
 
 
-def contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[SideContact]:
+def list_side_contacts(bench: Bench, way: ViewWay, heights: SheetHeights) -> Iterable[SideContact]:
     size = max(bench.shown.part.width, bench.shown.part.height)
     step = max(size * FINE, 1e-9)
-    outlines = bench.outlines(View(1.0, 0.0, 0.0), step)
+    outlines = bench.sample_outlines(View(1.0, 0.0, 0.0), step)
     holes = {clamp.tip: clamp.hole for clamp in bench.shown.clamps}
     for index in bench.placed:
         peg = bench.fixture.pegs[index]
-        carrier = bench.toolkit.carrier(peg.carrier)
-        touches, _ = contact_of(carrier.contact, (peg.x, peg.y), bench.faces[index])
+        carrier = bench.toolkit.find_carrier(peg.carrier)
+        touches, _ = find_contact(carrier.contact, (peg.x, peg.y), bench.faces[index])
         hole = holes.get(peg)
         yield SideContact(
             name=peg.hole,
-            at=way.across((peg.x, peg.y)),
+            at=way.project((peg.x, peg.y)),
             radius=carrier.peg_radius,
-            touches=way.across(touches),
+            touches=way.project(touches),
             band=heights.bands[index],
-            is_hidden=any(stands_before(outline, (peg.x, peg.y), way) for outline in outlines),
-            hole=None if hole is None else way.across(hole),
+            is_hidden=any(hides_point(outline, (peg.x, peg.y), way) for outline in outlines),
+            hole=None if hole is None else way.project(hole),
             is_clamp=carrier.contact is CLAMP_TIP,
             heights=carrier.heights,
         )
 
 
-def stands_before(outline: NDArray[np.float64], at: Point, way: ViewWay) -> bool:
-    """Whether a loop of the part lies between a point and the viewer.
+def hides_point(outline: NDArray[np.float64], at: Point, way: ViewWay) -> bool:
+    """Return whether a loop of the part lies between a point and the viewer.
 
     The outline has points (N, 2) in mm with y downward, as on a page.
     """
     x, y = outline[:, 0], -outline[:, 1]
-    across = x * way.right[0] + y * way.right[1] - way.across(at)
+    across = x * way.right[0] + y * way.right[1] - way.project(at)
     near = (x - at[0]) * way.towards[0] + (y - at[1]) * way.towards[1]
     # Where the ray crosses, the outline changes sides.
     before, after = across[:-1], across[1:]

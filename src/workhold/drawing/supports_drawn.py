@@ -8,11 +8,11 @@ from math import cos, dist, pi, sin
 
 from attrs import frozen
 
-from workhold.drawing.annotation import Label, LabelPlacer, Place, around
-from workhold.drawing.panel import TextColumn, moved_words
-from workhold.drawing.scene import Box, Scene, View, text_width
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, fact_or_field, heading
-from workhold.errors import listed
+from workhold.drawing.annotation import Label, LabelPlacer, Place, make_label_around
+from workhold.drawing.panel import TextColumn, describe_move
+from workhold.drawing.scene import Box, Scene, View, measure_text
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, write_fact_or_field, write_heading
+from workhold.errors import join_words
 from workhold.geometry.segment import Point
 from workhold.model.support_triples import ChosenSupports
 from workhold.units import Unit
@@ -24,10 +24,10 @@ __all__ = [
     "draw_supports",
     "draw_tip",
     "draw_triangle",
-    "holding_up_words",
-    "size_of",
+    "describe_supports",
+    "choose_lettering_size",
     "support_steps",
-    "tipping_words",
+    "describe_tipping",
     "write_heights",
     "write_supports",
 ]
@@ -69,7 +69,7 @@ class PlannedSupports:
     tip_radius: float
 
     @classmethod
-    def of(cls, chosen: ChosenSupports) -> PlannedSupports:
+    def from_chosen(cls, chosen: ChosenSupports) -> PlannedSupports:
         pose, request = chosen.recounted.fixture.pose, chosen.supports.request
         return cls(
             names=tuple(pad.hole for pad in chosen.pads),
@@ -80,131 +80,141 @@ class PlannedSupports:
             tip_radius=request.tip_radius,
         )
 
-    def holes_on(self, carrier: str) -> set[tuple[int, int]]:
+    def list_holes_on(self, carrier: str) -> set[tuple[int, int]]:
         return {(column, row) for name, column, row in self.holes if name == carrier}
 
-    def avoided(self, placer: LabelPlacer, view: View) -> None:
-        """Marks where these are drawn, so that labels keep off."""
+    def keep_labels_off(self, placer: LabelPlacer, view: View) -> None:
+        """Mark where these are drawn, so that labels keep off."""
         corners = [*self.places, self.places[0]]
         for one, other in pairwise(corners):
             placer.avoid_line(view(one), view(other), 1.0)
-        pad, tip = (size_of(radius, view) for radius in (self.pad_radius, self.tip_radius))
+        pad, tip = (choose_lettering_size(radius, view) for radius in (self.pad_radius, self.tip_radius))
         for at, radius in (*((place, pad) for place in self.places), (self.clamp, tip)):
             x, y = view(at)
             placer.avoid_box(Box(x, y, x, y).grown(radius))
 
-    def labels(self, view: View) -> list[Label]:
-        """Candidates for the names of the three, and for that of the clamp."""
+    def make_labels(self, view: View) -> list[Label]:
+        """Return the candidates for the names of the three, and for that of the clamp."""
         turns = [2 * pi * k / 24 for k in range(24)]
         found = []
         named = [(name, at, self.pad_radius) for name, at in zip(self.names, self.places, strict=True)]
         for name, at, radius in [*named, (TOP_NAME, self.clamp, self.tip_radius)]:
-            size = (text_width(name, NAME, bold=True) + 8, HIGH)
-            gaps = [size_of(radius, view) + gap for gap in (3, 8, 16, 28, 44, 64)]
-            found.append(around(view(at), -pi / 4, size, gaps, turns, turn_cost=1.0))
+            size = (measure_text(name, NAME, bold=True) + 8, HIGH)
+            gaps = [choose_lettering_size(radius, view) + gap for gap in (3, 8, 16, 28, 44, 64)]
+            found.append(make_label_around(view(at), -pi / 4, size, gaps, turns, turn_cost=1.0))
         return found
 
     def draw_names(self, scene: Scene, places: Sequence[Place], view: View) -> None:
         for name, place, radius in zip(
             (*self.names, TOP_NAME), places, (*[self.pad_radius] * 3, self.tip_radius), strict=True
         ):
-            leader = place.leader(size_of(radius, view))
+            leader = place.compute_leader(choose_lettering_size(radius, view))
             if dist(*leader) > 1.0:
-                scene.line(leader, SUPPORT, 1.2)
-            scene.rectangle(place.box, "#ffffff", SUPPORT, 1.2, 3)
-            scene.text(place.box.center, name, NAME, "middle", bold=True, fill=SUPPORT)
+                scene.add_line(leader, SUPPORT, 1.2)
+            scene.add_rectangle(place.box, "#ffffff", SUPPORT, 1.2, 3)
+            scene.add_text(place.box.center, name, NAME, "middle", bold=True, fill=SUPPORT)
 
 
-def size_of(radius: float, view: View) -> float:
+def choose_lettering_size(radius: float, view: View) -> float:
     return max(radius * view.scale, SMALLEST)
 
 
 def draw_supports(scene: Scene, supports: PlannedSupports, view: View) -> None:
-    """Draws the triangle of the supports, their pads, and the tip of the clamp on top."""
+    """Draw the triangle of the supports, their pads, and the tip of the clamp on top."""
     group = scene.group("supports", view)
     corners = [view(place) for place in supports.places]
     draw_triangle(group, corners)
     for at in corners:
-        draw_pad(group, at, size_of(supports.pad_radius, view))
-    draw_tip(group, view(supports.clamp), size_of(supports.tip_radius, view))
+        draw_pad(group, at, choose_lettering_size(supports.pad_radius, view))
+    draw_tip(group, view(supports.clamp), choose_lettering_size(supports.tip_radius, view))
 
 
 def draw_triangle(scene: Scene, corners: Sequence[Point]) -> None:
-    """Draws the triangle of three supports, given on the page."""
+    """Draw the triangle of three supports, given on the page."""
     for one, other in pairwise([*corners, corners[0]]):
-        scene.line([one, other], SUPPORT, 1.1, stroke_dasharray="9 3 2 3", **{"class": "support-triangle"})
+        scene.add_line(
+            [one, other], SUPPORT, 1.1, stroke_dasharray="9 3 2 3", **{"class": "support-triangle"}
+        )
 
 
 def draw_pad(scene: Scene, at: Point, radius: float = 7.0) -> None:
-    """Draws a support seen from above about a page point: a disc with a triangle."""
-    scene.circle(at, radius, "#ffffff", SUPPORT, 1.6, **{"class": "support"})
+    """Draw a support seen from above about a page point: a disc with a triangle."""
+    scene.add_circle(at, radius, "#ffffff", SUPPORT, 1.6, **{"class": "support"})
     corners = [
         (at[0] + 0.72 * radius * sin(2 * pi * k / 3), at[1] - 0.72 * radius * cos(2 * pi * k / 3))
         for k in range(3)
     ]
-    scene.polygon(corners, SUPPORT)
+    scene.add_polygon(corners, SUPPORT)
 
 
 def draw_tip(scene: Scene, at: Point, radius: float = 7.0) -> None:
-    """Draws the tip of a clamp that presses down about a page point: a disc with a cross."""
-    scene.circle(at, radius, "#ffffff", SUPPORT, 2.2, **{"class": "top-clamp"})
+    """Draw the tip of a clamp that presses down about a page point: a disc with a cross."""
+    scene.add_circle(at, radius, "#ffffff", SUPPORT, 2.2, **{"class": "top-clamp"})
     reach = radius * cos(pi / 4)
     for way in (1, -1):
-        scene.line([(at[0] - reach, at[1] - way * reach), (at[0] + reach, at[1] + way * reach)], SUPPORT, 1.8)
+        scene.add_line(
+            [(at[0] - reach, at[1] - way * reach), (at[0] + reach, at[1] + way * reach)], SUPPORT, 1.8
+        )
 
 
 def write_supports(column: TextColumn, sheet: Sheet) -> None:
-    """Writes where supports stand, where the clamp presses, with what force, and what that resists."""
+    """Write where supports stand, where the clamp presses, with what force, and what that resists."""
     chosen, lengths = sheet.details.supports, sheet.lengths
     assert chosen is not None
     request, clamp = chosen.supports.request, chosen.clamp
-    heading(column, "Supports and the clamp on top")
-    column.fact("supports in", listed([pad.hole for pad in chosen.pads]), bold=True)
-    column.fact("round pads", f"Ø {lengths.short(2 * request.pad_radius)}", bold=True)
+    write_heading(column, "Supports and the clamp on top")
+    column.write_fact("supports in", join_words([pad.hole for pad in chosen.pads]), bold=True)
+    column.write_fact("round pads", f"Ø {lengths.format_short(2 * request.pad_radius)}", bold=True)
     at = [place - zero for place, zero in zip(clamp.at, sheet.zero.point, strict=True)]
-    column.fact("clamp presses at", f"X {lengths.number(at[0])}, Y {lengths.words(at[1])}", bold=True)
+    column.write_fact(
+        "clamp presses at", f"X {lengths.number(at[0])}, Y {lengths.format_length(at[1])}", bold=True
+    )
     x, y = chosen.recounted.fixture.pose.apply(*clamp.at)
-    column.fact(f"from {sheet.datum.point}", f"x {lengths.number(x)}, y {lengths.words(y)}")
+    column.write_fact(f"from {sheet.datum.point}", f"x {lengths.number(x)}, y {lengths.format_length(y)}")
     if sheet.heights is not None and sheet.heights.clamped_height is not None:
-        column.fact("at the height", lengths.words(sheet.heights.clamped_height), bold=True)
-    column.fact("its round tip", f"Ø {lengths.short(2 * request.tip_radius)}", bold=True)
+        column.write_fact("at the height", lengths.format_length(sheet.heights.clamped_height), bold=True)
+    column.write_fact("its round tip", f"Ø {lengths.format_short(2 * request.tip_radius)}", bold=True)
     if request.rising:
-        column.fact("its head, at most", f"Ø {lengths.short(2 * request.head_radius)}", bold=True)
+        column.write_fact(
+            "its head, at most", f"Ø {lengths.format_short(2 * request.head_radius)}", bold=True
+        )
     write_forces(column, sheet, chosen)
-    column.fact("tipping arm", lengths.words(clamp.arm))
-    column.paragraph(f"{tipping_words(chosen, lengths.unit)} {holding_up_words(sheet, chosen)}", NOTE)
+    column.write_fact("tipping arm", lengths.format_length(clamp.arm))
+    column.write_paragraph(
+        f"{describe_tipping(chosen, lengths.unit)} {describe_supports(sheet, chosen)}", NOTE
+    )
     if clamp.hangs:
-        column.paragraph(HANGS, NOTE)
-    for sentence in counting_words(sheet, chosen):
-        column.paragraph(sentence, NOTE)
+        column.write_paragraph(HANGS, NOTE)
+    for sentence in explain_hole_names(sheet, chosen):
+        column.write_paragraph(sentence, NOTE)
 
 
 def write_forces(column: TextColumn, sheet: Sheet, chosen: ChosenSupports) -> None:
     supports, clamp, unit = chosen.supports, chosen.clamp, sheet.lengths.unit
     noun = sheet.toolkit.moving.noun
     if supports.loads:
-        wanted = f"at least {unit.force_above(clamp.clamp_needed)} {unit.force}"
-        column.fact("clamp force wanted", wanted, bold=True)
-        largest = f"{unit.force_above(clamp.support_force or 0.0)} {unit.force}"
-        column.fact("largest force on a support", largest, bold=True)
-        at = f"at a {noun} force of {unit.force_words(supports.jaw_force)}"
-        column.paragraph(f"Under the loads, {at}, without friction.", NOTE)
+        wanted = f"at least {unit.format_force_rounded_up(clamp.clamp_needed)} {unit.force}"
+        column.write_fact("clamp force wanted", wanted, bold=True)
+        largest = f"{unit.format_force_rounded_up(clamp.support_force or 0.0)} {unit.force}"
+        column.write_fact("largest force on a support", largest, bold=True)
+        at = f"at a {noun} force of {unit.format_force(supports.jaw_force)}"
+        column.write_paragraph(f"Under the loads, {at}, without friction.", NOTE)
         return
     if clamp.lift > 0 and sheet.details.jaw_force is not None:
-        force = f"at least {unit.force_above(clamp.lift * sheet.details.jaw_force)} {unit.force}"
-        column.fact("clamp force wanted", force, bold=True)
+        force = f"at least {unit.format_force_rounded_up(clamp.lift * sheet.details.jaw_force)} {unit.force}"
+        column.write_fact("clamp force wanted", force, bold=True)
     else:
-        fact_or_field(column, "clamp force wanted", None)
+        write_fact_or_field(column, "clamp force wanted", None)
     if clamp.lift > 0:
-        column.paragraph(
+        column.write_paragraph(
             f"The {noun}s may lift the part off a support, because of the heights at which they "
             f"press: at least {clamp.lift:.2f} times their force on top holds it down.",
             NOTE,
         )
 
 
-def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
-    """How large a moment the clamp on top resists, a sentence.
+def describe_tipping(chosen: ChosenSupports, unit: Unit) -> str:
+    """Return how large a moment the clamp on top resists, a sentence.
 
     The moment that tips the part is the clamp's force times the distance from the triangle's nearest side.
     """
@@ -212,13 +222,13 @@ def tipping_words(chosen: ChosenSupports, unit: Unit) -> str:
     what = "that force" if force > 0 else f"each {ROUND_FORCE:.0f} {unit.force}"
     force = force if force > 0 else ROUND_FORCE * unit.newtons
     moment = force * chosen.clamp.arm
-    words = f"{moment:.0f} N mm" if unit.newtons == 1 else unit.moment_words(moment)
+    words = f"{moment:.0f} N mm" if unit.newtons == 1 else unit.format_moment(moment)
     return f"With {what} the clamp alone resists a tipping moment of up to {words}."
 
 
-def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
+def describe_supports(sheet: Sheet, chosen: ChosenSupports) -> str:
     triple = chosen.triple
-    inside = f"the centre of its area is {sheet.lengths.words(triple.standing)} inside their triangle"
+    inside = f"the centre of its area is {sheet.lengths.format_length(triple.standing)} inside their triangle"
     if triple.stands:
         return f"Before it is clamped the part stands on the three supports: {inside}."
     if triple.standing >= 0:
@@ -232,26 +242,26 @@ def holding_up_words(sheet: Sheet, chosen: ChosenSupports) -> str:
     )
 
 
-def counting_words(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
-    """What to know where holes have other names than in the list of fixtures."""
+def explain_hole_names(sheet: Sheet, chosen: ChosenSupports) -> list[str]:
+    """Return what to know where holes have other names than in the list of fixtures."""
     recounted, sentences = chosen.recounted, list[str]()
     if recounted.move != (0, 0):
         sentences.append(
             f"So that supports have holes near the middle of the {sheet.plates_noun}, the whole "
-            f"set-up stands {moved_words(recounted.move)} than in the list."
+            f"set-up stands {describe_move(recounted.move)} than in the list."
         )
     travelled = recounted.fixture.travel - chosen.supports.fixture.travel
     if sheet.toolkit.moving.has_lattice and abs(travelled) > 1e-6:
         sentences.append(
             "Supports stand between the pegs, so the opening is "
-            f"{sheet.lengths.words(abs(travelled))} {('wider' if travelled > 0 else 'narrower')} than "
+            f"{sheet.lengths.format_length(abs(travelled))} {('wider' if travelled > 0 else 'narrower')} than "
             "in the list."
         )
     return sentences
 
 
 def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
-    """The steps of setting up with those about supports among them; the steps themselves without supports."""
+    """Return the steps of setting up with those about supports among them; the steps themselves without supports."""
     chosen = sheet.details.supports
     if chosen is None:
         return steps
@@ -261,8 +271,8 @@ def support_steps(sheet: Sheet, steps: list[str]) -> list[str]:
     )
     force = ""
     if chosen.supports.loads:
-        force = f" with at least {unit.force_above(chosen.clamp.clamp_needed)} {unit.force}"
-    put = f"{steps[0]} Put supports in {listed([pad.hole for pad in chosen.pads])}."
+        force = f" with at least {unit.format_force_rounded_up(chosen.clamp.clamp_needed)} {unit.force}"
+    put = f"{steps[0]} Put supports in {join_words([pad.hole for pad in chosen.pads])}."
     where = f"X {x}, Y {y} {lengths.sign}"
     press = f"Then press the part down at {where}{force}, inside the triangle of the supports."
     return [put, *steps[1:], press]
@@ -272,23 +282,29 @@ def write_heights(column: TextColumn, sheet: Sheet) -> None:
     heights, lengths = sheet.heights, sheet.lengths
     assert heights is not None
     noun = sheet.toolkit.plates[0].noun
-    heading(column, "Heights")
-    column.fact("height of the part", lengths.words(heights.thickness), bold=True)
-    column.fact(f"top of the pegs{heights.sure('peg_top')}", lengths.words(heights.peg_top), bold=True)
+    write_heading(column, "Heights")
+    column.write_fact("height of the part", lengths.format_length(heights.thickness), bold=True)
+    column.write_fact(
+        f"top of the pegs{heights.note_if_assumed('peg_top')}",
+        lengths.format_length(heights.peg_top),
+        bold=True,
+    )
     own = {one.elements: one.heights for one in sheet.toolkit.carriers if one.heights is not None}
     for elements, (low, high) in own.items():
-        column.fact(f"{elements}, from and to", f"{lengths.number(low)}, {lengths.words(high)}", bold=True)
+        column.write_fact(
+            f"{elements}, from and to", f"{lengths.number(low)}, {lengths.format_length(high)}", bold=True
+        )
     if any(low > 0 for low, _ in own.values()):
-        column.paragraph(FROM_THE_SIDE, NOTE)
+        column.write_paragraph(FROM_THE_SIDE, NOTE)
     if heights.head_room is not None:
-        column.fact("head room above the pegs", lengths.words(heights.head_room))
+        column.write_fact("head room above the pegs", lengths.format_length(heights.head_room))
     if heights.supported_by:
-        name = f"height of the supports{heights.sure('supported_by')}"
-        column.fact(name, lengths.words(heights.supported_by), bold=True)
-        column.fact(f"pegs above the {noun}", lengths.words(heights.above_plate), bold=True)
+        name = f"height of the supports{heights.note_if_assumed('supported_by')}"
+        column.write_fact(name, lengths.format_length(heights.supported_by), bold=True)
+        column.write_fact(f"pegs above the {noun}", lengths.format_length(heights.above_plate), bold=True)
     rows = [
         [peg.hole, *((lengths.number(end) for end in band) if band else ("?", "?"))]
         for peg, band in zip(sheet.fixture.pegs, heights.bands, strict=True)
     ]
     column.y += 2
-    column.table(["presses between", f"from {lengths.sign}", f"to {lengths.sign}"], rows, BODY)
+    column.write_table(["presses between", f"from {lengths.sign}", f"to {lengths.sign}"], rows, BODY)

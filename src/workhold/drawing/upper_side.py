@@ -18,8 +18,8 @@ from attrs import frozen
 from workhold.drawing.bench import LOWEST, draw_inset
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import Box, LengthUnit
-from workhold.drawing.sheet_writing import BODY, Sheet, fact_or_field, heading
-from workhold.errors import listed
+from workhold.drawing.sheet_writing import BODY, Sheet, write_fact_or_field, write_heading
+from workhold.errors import join_words
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.symmetry import is_own_mirror_image, middle_of
 from workhold.model.first_side import FirstSide
@@ -30,10 +30,10 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "Mark",
-    "distinguishing_marks",
-    "marks_of",
-    "side_up_words",
-    "side_words",
+    "find_distinguishing_marks",
+    "list_marks",
+    "describe_solid_side_up",
+    "describe_upper_side",
     "write_part",
     "write_side",
     "write_side_up",
@@ -53,11 +53,13 @@ ON_NO_FACE = "The part lies on no level face: hold it level, on vee blocks or pa
 
 
 def write_side(column: TextColumn, sheet: Sheet) -> None:
-    """Writes the part's thickness, and which side is up."""
-    heading(column, "Part and its upper side")
+    """Write the part's thickness, and which side is up."""
+    write_heading(column, "Part and its upper side")
     thickness = sheet.details.thickness if sheet.heights is None else sheet.heights.thickness
-    fact_or_field(column, "thickness", None if thickness is None else sheet.lengths.words(thickness))
-    column.paragraph(side_words(sheet.workpiece, sheet.fixture, sheet.lengths), BODY)
+    write_fact_or_field(
+        column, "thickness", None if thickness is None else sheet.lengths.format_length(thickness)
+    )
+    column.write_paragraph(describe_upper_side(sheet.workpiece, sheet.fixture, sheet.lengths), BODY)
 
 
 def write_part(column: TextColumn, sheet: Sheet) -> None:
@@ -93,17 +95,19 @@ class Mark:
         sizes = ((self.length, other.length), (self.radius, other.radius))
         return self.bend == other.bend and all(abs(a - b) <= SEEN * max(a, b) for a, b in sizes)
 
-    def words(self, lengths: LengthUnit) -> str:
+    def describe(self, lengths: LengthUnit) -> str:
         if self.hole:
-            return f"hole {self.hole}" + (f", Ø {lengths.short(2 * self.radius, 4)}," if self.radius else "")
+            return f"hole {self.hole}" + (
+                f", Ø {lengths.format_short(2 * self.radius, 4)}," if self.radius else ""
+            )
         if self.radius:
             shape = "rounding" if self.bend > 0 else "hollow"
-            return f"the {shape} of radius {lengths.short(self.radius, 4)}"
-        return f"the straight edge {lengths.short(self.length, 4)} long"
+            return f"the {shape} of radius {lengths.format_short(self.radius, 4)}"
+        return f"the straight edge {lengths.format_short(self.length, 4)} long"
 
 
-def marks_of(workpiece: Workpiece) -> list[Mark]:
-    """The holes, and after them the faces of the outer outline, the longest first of either."""
+def list_marks(workpiece: Workpiece) -> list[Mark]:
+    """Return the holes, and after them the faces of the outer outline, the longest first of either."""
     outer, (x, y) = workpiece.outer_count, workpiece.center
     segments = {face.number: face.segment for face in workpiece.faces}
     holes, number = [], outer
@@ -123,13 +127,13 @@ def marks_of(workpiece: Workpiece) -> list[Mark]:
     return (ordered[0] + ordered[1])[:MOST_MARKS]
 
 
-def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
-    """The two marks, each like no other, that are plainest to see; None where there are no two.
+def find_distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
+    """Return the two marks, each like no other, that are plainest to see; None where there are no two.
 
     They span the largest triangle with the middle. A triangle counts twice with one hole and three times with
     two.
     """
-    marks = marks_of(workpiece)
+    marks = list_marks(workpiece)
     x0, y0, x1, y1 = workpiece.bounds
     away = AWAY * hypot(x1 - x0, y1 - y0)
     single = [
@@ -148,7 +152,7 @@ def distinguishing_marks(workpiece: Workpiece) -> tuple[Mark, Mark] | None:
     return best and best[1]
 
 
-def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
+def describe_upper_side(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> str:
     if is_own_mirror_image([face.segment for face in workpiece.faces]):
         if workpiece.solid is not None:
             up = f"{workpiece.solid.axis.replace('-', '−')} of the file points up"
@@ -157,7 +161,7 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
             "The outline is its own mirror image: the part looks alike and lies in the same pegs "
             "either side up. If the sides differ, mark the upper one first."
         )
-    marks = distinguishing_marks(workpiece)
+    marks = find_distinguishing_marks(workpiece)
     if marks is None:
         return (
             "The outline differs from its mirror image, but the difference is hard to see: mark the "
@@ -167,7 +171,7 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
     for mark in marks:
         there = fixture.pose.apply(mark.place[0] + workpiece.center[0], mark.place[1] + workpiece.center[1])
         eighth = round(atan2(there[1] - y, there[0] - x) / (pi / 4)) % 8
-        places.append(f"{mark.words(lengths)} at the {EIGHTHS[eighth]}")
+        places.append(f"{mark.describe(lengths)} at the {EIGHTHS[eighth]}")
     return (
         f"The right way up, lying as in the plan, the part has {places[0]} and {places[1]}. "
         "Upside down it never has both there."
@@ -175,36 +179,39 @@ def side_words(workpiece: Workpiece, fixture: Fixture, lengths: LengthUnit) -> s
 
 
 def write_side_up(column: TextColumn, sheet: Sheet) -> None:
-    """Writes which side of the solid is up, and which of its faces the set-up before cut or located on."""
+    """Write which side of the solid is up, and which of its faces the set-up before cut or located on."""
     solid, before = sheet.workpiece.solid, sheet.details.first_side
     assert solid is not None
-    heading(column, "Which side is up" if before is None else "Second set-up of the same part")
-    for words in side_up_words(solid, before):
-        column.paragraph(words, BODY)
+    write_heading(column, "Which side is up" if before is None else "Second set-up of the same part")
+    for words in describe_solid_side_up(solid, before):
+        column.write_paragraph(words, BODY)
     if solid.lies_on_no_face:
-        column.paragraph(ON_NO_FACE, BODY)
+        column.write_paragraph(ON_NO_FACE, BODY)
 
 
-def side_up_words(solid: SolidOutline, before: FirstSide | None) -> list[str]:
+def describe_solid_side_up(solid: SolidOutline, before: FirstSide | None) -> list[str]:
     up = solid.axis.replace("-", "−")
     sentences = [f"{up} of the file points up."]
     if before is None:
         return sentences
     if before.up == before.up_before:
-        return [f"The same side is up as in the first set-up: {up} of the file.", *face_words(before)]
+        return [
+            f"The same side is up as in the first set-up: {up} of the file.",
+            *describe_faces_before(before),
+        ]
     was = before.up_before.replace("-", "−")
     return [
         f"This is the second side: {up} of the file points up, and {was} did before. The part is "
         f"{before.turned}.",
-        *face_words(before),
+        *describe_faces_before(before),
     ]
 
 
-def face_words(before: FirstSide) -> list[str]:
-    cut, found = numbered_faces(before.cut_of_solid), list[str]()
+def describe_faces_before(before: FirstSide) -> list[str]:
+    cut, found = list_face_numbers(before.cut_of_solid), list[str]()
     if before.cut:
         found.append(
-            f"{numbered_faces(before.cut).capitalize()} of this outline must not be touched: the first "
+            f"{list_face_numbers(before.cut).capitalize()} of this outline must not be touched: the first "
             f"set-up cuts {cut} of the solid."
         )
     elif before.cut_of_solid:
@@ -213,7 +220,7 @@ def face_words(before: FirstSide) -> list[str]:
         found.append("The first set-up names no face that it cuts.")
     if before.shared:
         found.append(
-            f"{numbered_faces(before.shared).capitalize()} of the solid "
+            f"{list_face_numbers(before.shared).capitalize()} of the solid "
             f"{'is' if len(before.shared) == 1 else 'are'} touched in both set-ups, in the first by its best "
             "fixture."
         )
@@ -222,8 +229,8 @@ def face_words(before: FirstSide) -> list[str]:
     return found
 
 
-def numbered_faces(numbers: Sequence[int]) -> str:
-    """Faces by their numbers, such as ``faces 1, 2 and 5``; empty where there are none."""
+def list_face_numbers(numbers: Sequence[int]) -> str:
+    """Return the faces by their numbers, such as ``faces 1, 2 and 5``; empty where there are none."""
     if not numbers:
         return ""
-    return f"{'face' if len(numbers) == 1 else 'faces'} {listed([str(number) for number in numbers])}"
+    return f"{'face' if len(numbers) == 1 else 'faces'} {join_words([str(number) for number in numbers])}"

@@ -26,13 +26,13 @@ from numpy.typing import NDArray
 
 from workhold.conventions import GAP_SLACK
 from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import bench_of, draw_part, draw_pegs
-from workhold.drawing.carriers import STILL, draw_clamp, draw_push, draw_wall, labelled
-from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, LengthUnit, Scene, View, shortened
+from workhold.drawing.bench import draw_part, draw_pegs, make_bench
+from workhold.drawing.carriers import STILL, choose_labelled, draw_clamp, draw_push, draw_wall
+from workhold.drawing.scene import GREY, LANDSCAPE, PORTRAIT, Box, LengthUnit, Scene, View, shorten_text
 from workhold.errors import InputError
-from workhold.family.patterns import shifted
-from workhold.family.solver import ROUNDING, best_choice, load_solver
-from workhold.fixels.carrier import Carrier, column_letters
+from workhold.family.patterns import shift_fixture
+from workhold.family.solver import ROUNDING, find_best_choice, load_solver
+from workhold.fixels.carrier import Carrier, make_column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Line
 from workhold.model.clamps import list_shown_clamps
@@ -41,7 +41,7 @@ from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
-__all__ = ["Packing", "copies_of", "draw_copies", "packing_of", "too_near_shifts"]
+__all__ = ["Packing", "make_copies", "draw_copies", "pack_copies", "find_too_near_shifts"]
 
 Array = NDArray[np.float64]
 Shift = tuple[int, int]
@@ -83,7 +83,7 @@ class Bodies:
     radius: Array
 
 
-def bodies_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodies:
+def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodies:
     chords = []
     for loop in workpiece.loop_segments:
         for segment in loop:
@@ -94,17 +94,17 @@ def bodies_of(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Bodie
                 count = max(1, ceil(2 * placed.half_sweep / max(turn, pi / 720)))
             ends = [placed.at(placed.half_extent * (2 * k / count - 1)) for k in range(count + 1)]
             chords += list(pairwise(ends))
-    locators = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).has_lattice]
+    locators = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).has_lattice]
     clamps = list(list_shown_clamps(fixture, toolkit))
     cores = [((peg.x, peg.y), (peg.x, peg.y)) for peg in locators]
     cores += [(clamp.back, (clamp.tip.x, clamp.tip.y)) for clamp in clamps]
-    radius = [toolkit.carrier(peg.carrier).body_radius for peg in locators]
+    radius = [toolkit.find_carrier(peg.carrier).body_radius for peg in locators]
     radius += [clamp.carrier.peg_radius for clamp in clamps]
     return Bodies(np.array(chords), np.array(cores), np.array(radius))
 
 
-def distances(one: Array, other: Array) -> Array:
-    """The distance (N, M) of every piece (N, 2, 2) from every other one (M, 2, 2), 0 where they cross."""
+def measure_distances(one: Array, other: Array) -> Array:
+    """Return the distance (N, M) of every piece (N, 2, 2) from every other one (M, 2, 2), 0 where they cross."""
 
     def from_ends(ends: Array, pieces: Array) -> Array:
         start, way = pieces[None, :, 0], (pieces[:, 1] - pieces[:, 0])[None]
@@ -133,20 +133,20 @@ def is_clear(bodies: Bodies, move: Array, gap: float) -> bool:
     outline, cores = bodies.outline + move, bodies.cores + move
     slack = GAP_SLACK
     both = bodies.radius[:, None] + bodies.radius
-    if (distances(bodies.cores, cores) < both - slack).any():
+    if (measure_distances(bodies.cores, cores) < both - slack).any():
         return False
     reach = bodies.radius[:, None] + gap + SAGITTA - slack
     for some, around in ((bodies.cores, outline), (cores, bodies.outline)):
-        if (distances(some, around) < reach).any():
+        if (measure_distances(some, around) < reach).any():
             return False
-    return not (distances(bodies.outline, outline) < gap + 2 * SAGITTA - slack).any()
+    return not (measure_distances(bodies.outline, outline) < gap + 2 * SAGITTA - slack).any()
 
 
-def too_near_shifts(
+def find_too_near_shifts(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, gap: float, spread: Shift
 ) -> set[Shift]:
     """Return the shifts, up to ``spread`` columns and rows either way, at which two copies are not clear."""
-    bodies, pitch = bodies_of(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
+    bodies, pitch = collect_bodies(fixture, workpiece, toolkit), np.array(toolkit.carriers[0].pitch)
     points = np.concatenate([bodies.outline.reshape(-1, 2), bodies.cores.reshape(-1, 2)])
     reach = np.ptp(points, axis=0) + 2 * bodies.radius.max() + gap + 2 * SAGITTA
     out = {(0, 0)}
@@ -160,14 +160,14 @@ def too_near_shifts(
     return out
 
 
-def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
+def list_places_on_plate(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
     """Return the shifts at which a fixture stands on a plate of so many columns and rows, row by row.
 
     Refuses a plate on which one alone does not stand.
     """
     used_columns, used_rows = [], []
     for peg in fixture.pegs:
-        in_column, in_row = toolkit.carrier(peg.carrier).counted
+        in_column, in_row = toolkit.find_carrier(peg.carrier).counted
         used_columns += [peg.column] * in_column
         used_rows += [peg.row] * in_row
     if max(used_columns) - min(used_columns) >= columns or max(used_rows) - min(used_rows) >= rows:
@@ -180,7 +180,7 @@ def places_on(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> li
     return [(i, j) for j in upward for i in range(-min(used_columns), columns - max(used_columns))]
 
 
-def packing_of(
+def pack_copies(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -208,21 +208,21 @@ def packing_of(
             f"a {toolkit.noun} holds one part: its {toolkit.moving.noun} presses several copies unlike; take "
             "a plate or a fence."
         )
-    places = places_on(fixture, toolkit, columns, rows)
+    places = list_places_on_plate(fixture, toolkit, columns, rows)
     spread = (
         max(i for i, _ in places) - min(i for i, _ in places),
         max(j for _, j in places) - min(j for _, j in places),
     )
-    near = too_near_shifts(fixture, workpiece, toolkit, gap, spread)
-    known = max((first_fit(order, near) for order in (places, sorted(places))), key=len)
+    near = find_too_near_shifts(fixture, workpiece, toolkit, gap, spread)
+    known = max((place_first_fit(order, near) for order in (places, sorted(places))), key=len)
     if len(places) > MOST_PLACES:
-        return Packing(in_rows(known), len(places))
+        return Packing(sort_by_rows(known), len(places))
     load_solver()
-    return solved(places, near, known, seconds)
+    return solve_packing(places, near, known, seconds)
 
 
-def first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
-    """Places taken one after the other where there is room."""
+def place_first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
+    """Return the places taken one after the other where there is room."""
     taken: list[Shift] = []
     for i, j in places:
         if all((i - a, j - b) not in near for a, b in taken):
@@ -230,12 +230,12 @@ def first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
     return taken
 
 
-def in_rows(places: list[Shift]) -> tuple[Shift, ...]:
-    """Places from the lowest row on, from left to right."""
+def sort_by_rows(places: list[Shift]) -> tuple[Shift, ...]:
+    """Return the places from the lowest row on, from left to right."""
     return tuple(sorted(places, key=lambda place: (place[1], place[0])))
 
 
-def crowds(near: set[Shift]) -> list[list[Shift]]:
+def find_crowds(near: set[Shift]) -> list[list[Shift]]:
     """Set of shifts that are pairwise too near; every shift that is too near is between two of one set."""
     left, out = near - {(0, 0)}, []
     ordered = sorted(left, key=lambda shift: (abs(shift[0]) + abs(shift[1]), shift))
@@ -252,14 +252,16 @@ def crowds(near: set[Shift]) -> list[list[Shift]]:
     return out
 
 
-def solved(places: list[Shift], near: set[Shift], known: list[Shift], seconds: float | None) -> Packing:
+def solve_packing(
+    places: list[Shift], near: set[Shift], known: list[Shift], seconds: float | None
+) -> Packing:
     """Return the most places no two of which are too near."""
     from scipy.optimize import LinearConstraint
     from scipy.sparse import csr_array
 
     number = {place: k for k, place in enumerate(places)}
     rows = set()
-    for crowd in crowds(near):
+    for crowd in find_crowds(near):
         for i, j in places:
             for a, b in crowd:
                 # Every crowd in which this place is any of the members.
@@ -269,19 +271,19 @@ def solved(places: list[Shift], near: set[Shift], known: list[Shift], seconds: f
                 if len(members) > 1:
                     rows.add(members)
     if not rows:
-        return Packing(in_rows(places), len(places))
+        return Packing(sort_by_rows(places), len(places))
     ordered = sorted(rows)
     index = np.concatenate([[0], np.cumsum([len(members) for members in ordered])])
     inside = np.concatenate([np.array(members) for members in ordered])
     matrix = csr_array((np.ones(len(inside)), inside, index), shape=(len(ordered), len(places)))
     count = len(places)
-    found, bound = best_choice(-np.ones(count), LinearConstraint(matrix, ub=1.0), seconds)
+    found, bound = find_best_choice(-np.ones(count), LinearConstraint(matrix, ub=1.0), seconds)
     chosen = known if found is None else [places[k] for k in found]
     is_packing = all((a - c, b - d) not in near for (a, b), (c, d) in combinations(chosen, 2))
     if len(chosen) < len(known) or not is_packing:
         chosen = known
     at_most = count if bound is None else floor(-bound + ROUNDING)
-    return Packing(in_rows(chosen), max(at_most, len(chosen)))
+    return Packing(sort_by_rows(chosen), max(at_most, len(chosen)))
 
 
 EDGE, HEADER, FOOTER, NAMES = 32.0, 74.0, 34.0, 34.0
@@ -289,9 +291,9 @@ EDGE, HEADER, FOOTER, NAMES = 32.0, 74.0, 34.0, 34.0
 WEIGHT = 0.6
 
 
-def copies_of(row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: Packing) -> list[Fixture]:
+def make_copies(row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: Packing) -> list[Fixture]:
     """Return every copy of a fixture, a table of one row, where it stands."""
-    moved = (shifted(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
+    moved = (shift_fixture(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
     return [make_fixture_of_row(one, toolkit, 0, workpiece) for one in moved]
 
 
@@ -305,7 +307,7 @@ def draw_copies(
 ) -> str:
     """Draw copies on a plate of so many columns and rows, on A4, as SVG text."""
     plate, (columns, rows) = toolkit.carriers[0], size
-    benches = [bench_of(fixture, workpiece, toolkit) for fixture in copies]
+    benches = [make_bench(fixture, workpiece, toolkit) for fixture in copies]
     holes = Box(*plate.place(0, 0), *plate.place(columns - 1, rows - 1)).grown(max(plate.pitch) / 2)
     clamps = [clamp.room for bench in benches for clamp in bench.shown.clamps]
     extent = reduce(Box.union, [*(bench.shown.part for bench in benches), *clamps], holes)
@@ -313,11 +315,13 @@ def draw_copies(
     extent = reduce(Box.union, walls, extent)
     page = LANDSCAPE if extent.width >= 0.8 * extent.height else PORTRAIT
     count = "1 copy" if len(copies) == 1 else f"{len(copies)} copies"
-    heading = shortened(f"{workpiece.name}: {count}", 26, page[0] - 2 * EDGE, bold=True)
-    scene = Scene.page(page, heading)
-    scene.text((EDGE, EDGE + 12), heading, 26, bold=True)
-    scene.text((EDGE, EDGE + 42), f"On a plate of {columns} columns and {rows} rows of holes.", 15, fill=GREY)
-    view = View.fitting(
+    heading = shorten_text(f"{workpiece.name}: {count}", 26, page[0] - 2 * EDGE, bold=True)
+    scene = Scene.make_page(page, heading)
+    scene.add_text((EDGE, EDGE + 12), heading, 26, bold=True)
+    scene.add_text(
+        (EDGE, EDGE + 42), f"On a plate of {columns} columns and {rows} rows of holes.", 15, fill=GREY
+    )
+    view = View.fit_box(
         extent, Box(EDGE + NAMES, EDGE + HEADER, page[0] - EDGE, page[1] - EDGE - FOOTER - NAMES)
     )
     draw_whole_plate(scene, holes, plate, size, view)
@@ -331,28 +335,30 @@ def draw_copies(
         for clamp in bench.shown.clamps:
             draw_push(group, clamp, view, WEIGHT)
         draw_pegs(group, bench, view, WEIGHT)
-        group.text(
+        group.add_text(
             view(bench.fixture.pose.apply(*workpiece.center)), str(number), 16, "middle", bold=True, halo=3
         )
-    scale_bar(scene, (EDGE, page[1] - EDGE), view.scale, LengthUnit.suiting(unit, min(plate.pitch)))
-    return scene.svg()
+    scale_bar(
+        scene, (EDGE, page[1] - EDGE), view.scale, LengthUnit.from_typical_length(unit, min(plate.pitch))
+    )
+    return scene.to_svg()
 
 
 def draw_whole_plate(scene: Scene, holes: Box, plate: Carrier, size: tuple[int, int], view: View) -> None:
-    box, (columns, rows) = view.box(holes), size
+    box, (columns, rows) = view.map_box(holes), size
     fill, edge = STILL
-    scene.group("plate").rectangle(box, fill, edge, 2.0)
+    scene.group("plate").add_rectangle(box, fill, edge, 2.0)
     group = scene.group("holes")
     radius = max(
         0.28 * min(plate.pitch) * view.scale if plate.peg_radius == 0 else plate.peg_radius * view.scale, 0.5
     )
     for column in range(columns):
         for row in range(rows):
-            group.circle(view(plate.place(column, row)), radius, "#ffffff", GREY, min(0.7, 0.3 * radius))
+            group.add_circle(view(plate.place(column, row)), radius, "#ffffff", GREY, min(0.7, 0.3 * radius))
     names = scene.group("hole-names")
     across = [(column, view(plate.place(column, 0))[0]) for column in range(columns)]
     along = [(row, view(plate.place(0, row))[1]) for row in range(rows)]
-    for column, x, _ in labelled(across, set(), 22.0):
-        names.text((x, box.y1 + 14), column_letters(column), 12, "middle", fill=GREY)
-    for row, y, _ in labelled(along, set(), 15.0):
-        names.text((box.x0 - 8, y), str(row + 1), 12, "end", fill=GREY)
+    for column, x, _ in choose_labelled(across, set(), 22.0):
+        names.add_text((x, box.y1 + 14), make_column_letters(column), 12, "middle", fill=GREY)
+    for row, y, _ in choose_labelled(along, set(), 15.0):
+        names.add_text((box.x0 - 8, y), str(row + 1), 12, "end", fill=GREY)

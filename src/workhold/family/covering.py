@@ -22,23 +22,23 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.family.members import Member
-from workhold.family.solver import ROUNDING, best_choice
-from workhold.listing.canonical_form import changes
+from workhold.family.solver import ROUNDING, find_best_choice
+from workhold.listing.canonical_form import mark_changes
 
 __all__ = [
     "Cover",
     "LossTable",
     "Point",
     "Search",
-    "as_sets",
+    "convert_bits_to_sets",
     "cover",
-    "curve_of",
-    "first_cover",
-    "greedy",
-    "maximal",
-    "packing",
-    "points_of",
-    "table_of",
+    "compute_curve",
+    "find_first_cover",
+    "find_greedy_cover",
+    "find_maximal_sets",
+    "bound_cover_size",
+    "list_curve_points",
+    "make_loss_table",
 ]
 
 BoolArray = NDArray[np.bool_]
@@ -66,14 +66,14 @@ class Cover:
         return self.at_least == len(self.sets)
 
 
-def maximal(masks: WordArray) -> NDArray[np.int64]:
+def find_maximal_sets(masks: WordArray) -> NDArray[np.int64]:
     """Return the sets (K,) of some (S, W), given as bits, that are in no other one, larger ones first.
 
     Of equal sets it is the first.
     """
     words = list(masks.T)
     by_mask = np.lexsort(words)
-    first = np.sort(by_mask[changes([word[by_mask] for word in words])])
+    first = np.sort(by_mask[mark_changes([word[by_mask] for word in words])])
     size = np.bitwise_count(masks[first]).sum(axis=1).astype(np.int64)
     order = first[np.argsort(-size, kind="stable")]
     kept = np.zeros((0, masks.shape[1]), np.uint64)
@@ -86,7 +86,7 @@ def maximal(masks: WordArray) -> NDArray[np.int64]:
     return np.array(out, np.int64)
 
 
-def greedy(sets: BoolArray) -> tuple[int, ...]:
+def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
     """Return a cover by the greedy algorithm: each time the set (of S, M) that holds most of what is left.
 
     Every member has to be in some set.
@@ -106,14 +106,14 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     """
     from scipy.optimize import LinearConstraint
 
-    quick = greedy(sets)
+    quick = find_greedy_cover(sets)
     # Members that share no set need a set each: often that is already as many as there are.
-    at_least = packing(sets)
+    at_least = bound_cover_size(sets)
     if at_least == len(quick):
         return Cover(quick, at_least)
     constraint = LinearConstraint(sets.T.astype(np.float64), lb=1.0)
     seconds = None if deadline is None else deadline - monotonic()
-    found, bound = best_choice(np.ones(len(sets)), constraint, seconds)
+    found, bound = find_best_choice(np.ones(len(sets)), constraint, seconds)
     if bound is not None:
         at_least = max(at_least, ceil(bound - ROUNDING))
     chosen = quick if found is None else tuple(found)
@@ -122,7 +122,7 @@ def cover(sets: BoolArray, deadline: float | None = None) -> Cover:
     return Cover(chosen, min(at_least, len(chosen)))
 
 
-def packing(sets: BoolArray) -> int:
+def bound_cover_size(sets: BoolArray) -> int:
     """Return a lower bound of covers: a number of members no two of which are in one set, found greedily."""
     beside = sets.T.astype(np.int64) @ sets.astype(np.int64) > 0
     left, count = np.ones(len(beside), np.bool_), 0
@@ -134,10 +134,11 @@ def packing(sets: BoolArray) -> int:
     return count
 
 
-def first_cover(
+def find_first_cover(
     sets: BoolArray, count: int, known: tuple[int, ...], deadline: float | None = None
 ) -> tuple[int, ...]:
-    """The first cover of some number of sets (of S, M) in lexicographic order; ``known`` is one of that many.
+    """Return the first cover of some number of sets (of S, M) in lexicographic order; ``known`` is one of
+    that many.
 
     After the deadline it is the first that is known then.
     """
@@ -150,7 +151,7 @@ def first_cover(
         if known[len(chosen)] == number:
             found: tuple[int, ...] | None = known[len(chosen) + 1 :]
         else:
-            found = completed(sets, rest, number + 1, count - len(chosen) - 1, deadline)
+            found = complete_cover(sets, rest, number + 1, count - len(chosen) - 1, deadline)
         if found is not None:
             known = (*chosen, number, *found)
             chosen.append(number)
@@ -158,10 +159,10 @@ def first_cover(
     return tuple(chosen)
 
 
-def completed(
+def complete_cover(
     sets: BoolArray, left: BoolArray, first: int, count: int, deadline: float | None
 ) -> tuple[int, ...] | None:
-    """Up to ``count`` sets from the ``first`` on that hold what is left; None if none are found."""
+    """Choose up to ``count`` sets, from the ``first`` on, that hold what is left; None if there are none."""
     if not left.any():
         return ()
     some = sets[first:, left]
@@ -171,7 +172,7 @@ def completed(
     return tuple(first + one for one in found.sets) if len(found.sets) <= count else None
 
 
-def as_sets(masks: WordArray, members: int) -> BoolArray:
+def convert_bits_to_sets(masks: WordArray, members: int) -> BoolArray:
     """Set (S, W) of bits as (S, M)."""
     bits = np.unpackbits(masks.view(np.uint8), axis=1, bitorder="little")
     return bits[:, :members].astype(np.bool_)
@@ -220,7 +221,7 @@ class LossTable:
     member: IntArray
     loss: NDArray[np.float64]
 
-    def masks(self, bound: float) -> NDArray[np.uint64]:
+    def make_masks(self, bound: float) -> NDArray[np.uint64]:
         """Return the sets (P, K) of members that patterns hold within a bound, as bits."""
         end = int(np.searchsorted(self.loss, bound, side="right"))
         out = np.zeros((len(self.words), -(-self.members // WORD)), np.uint64)
@@ -229,15 +230,15 @@ class LossTable:
         np.bitwise_or.at(out, place, np.uint64(1) << (member % np.uint64(WORD)))
         return out
 
-    def only(self, chosen: IntArray) -> LossTable:
+    def select_patterns(self, chosen: IntArray) -> LossTable:
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0
         entries = place[self.pattern[kept]], self.member[kept], self.loss[kept]
         return LossTable(self.members, self.words[chosen], self.number[chosen], *entries)
 
-    def losses_of(self, patterns: Sequence[int]) -> NDArray[np.float64]:
-        """The loss (K, M) of the patterns at some places on each member, NaN where one does not hold it."""
+    def list_losses(self, patterns: Sequence[int]) -> NDArray[np.float64]:
+        """Return the loss (K, M) of the patterns at some places on each member, NaN where one does not hold it."""
         out = np.full((len(patterns), self.members), np.nan)
         for row, place in enumerate(patterns):
             entries = np.flatnonzero(self.pattern == place)
@@ -245,13 +246,13 @@ class LossTable:
         return out
 
 
-def table_of(members: Sequence[Member]) -> LossTable:
+def make_loss_table(members: Sequence[Member]) -> LossTable:
     """Return the table of some members, at least one, each of which some pattern holds."""
     words = np.concatenate([one.words for one in members])
     owner = np.repeat(np.arange(len(members)), [len(one.words) for one in members])
     loss = np.concatenate([one.loss for one in members])
     order = np.lexsort(words.T[::-1])
-    fresh = changes(list(words[order].T))
+    fresh = mark_changes(list(words[order].T))
     pattern = np.empty(len(words), np.int64)
     pattern[order] = np.cumsum(fresh) - 1
     by_loss = np.argsort(loss, kind="stable")
@@ -281,30 +282,30 @@ class Search:
     covers: dict[int, Cover] = field(factory=dict)
     done: float = 0.0
 
-    def at(self, place: int, table: LossTable) -> None:
+    def search_at_bound(self, place: int, table: LossTable) -> None:
         """Find the fewest patterns of a table that are a cover at a bound."""
-        masks = table.masks(float(self.bounds[place]))
-        kept = maximal(masks)
-        found = cover(as_sets(masks[kept], table.members), self.deadline)
+        masks = table.make_masks(float(self.bounds[place]))
+        kept = find_maximal_sets(masks)
+        found = cover(convert_bits_to_sets(masks[kept], table.members), self.deadline)
         numbers = tuple(sorted(table.number[kept[list(found.sets)]].tolist()))
         self.covers[place] = Cover(numbers, found.at_least)
 
-    def between(self, low: int, high: int, table: LossTable, share: float) -> None:
+    def search_between(self, low: int, high: int, table: LossTable, share: float) -> None:
         """Find covers at the bounds between two at which they are known, wherever they may differ."""
         if high - low < 2 or len(self.covers[low].sets) == len(self.covers[high].sets):
             self.done += share
             self.progress(self.done)
             return
-        table = table.only(self.worth_trying(low, high, table))
+        table = table.select_patterns(self.list_worth_trying(low, high, table))
         middle = (low + high) // 2
-        self.at(middle, table)
-        self.between(low, middle, table, share / 2)
-        self.between(middle, high, table, share / 2)
+        self.search_at_bound(middle, table)
+        self.search_between(low, middle, table, share / 2)
+        self.search_between(middle, high, table, share / 2)
 
-    def worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
+    def list_worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
         """Return the places of patterns that between two bounds may hold what no other one does."""
-        least, most = (table.masks(float(self.bounds[place])) for place in (low, high))
-        largest = maximal(least)
+        least, most = (table.make_masks(float(self.bounds[place])) for place in (low, high))
+        largest = find_maximal_sets(least)
         inside = np.zeros(len(least), np.bool_)
         for mask in least[largest]:
             inside |= ((most & ~mask) == 0).all(axis=1)
@@ -312,13 +313,14 @@ class Search:
         return np.flatnonzero(~inside)
 
 
-def curve_of(
+def compute_curve(
     table: LossTable,
     most_loss: float = np.inf,
     deadline: float | None = None,
     progress: Callable[[float], None] = lambda fraction: None,
 ) -> tuple[Point, ...]:
-    """The curve, from the fewest set-ups to the least loss, without numbers that gain nothing over fewer.
+    """Return the curve, from the fewest set-ups to the least loss, without numbers that gain nothing over
+    fewer.
 
     Losses larger than ``most_loss``, within which every member can be held, are not accepted. Points after
     the deadline, of the clock ``time.monotonic``, are what was known then.
@@ -327,12 +329,12 @@ def curve_of(
     bounds = np.unique(table.loss[(table.loss >= least) & (table.loss <= most_loss)])
     search, last = Search(table, bounds, deadline, progress), len(bounds) - 1
     for place in (0, last):
-        search.at(place, table)
-    search.between(0, last, table, 1.0)
-    return tuple(reversed(list(points_of(search))))
+        search.search_at_bound(place, table)
+    search.search_between(0, last, table, 1.0)
+    return tuple(reversed(list(list_curve_points(search))))
 
 
-def points_of(search: Search) -> Iterator[Point]:
+def list_curve_points(search: Search) -> Iterator[Point]:
     """Yield the points of the curve, the smallest loss first."""
     fewest = len(search.table.words) + 1
     for place in sorted(search.covers):
@@ -343,18 +345,20 @@ def points_of(search: Search) -> Iterator[Point]:
         # What is proven of the least number at a bound holds at every smaller one.
         at_least = max(one.at_least for other, one in search.covers.items() if other >= place)
         is_least = place == 0 or (place - 1 in search.covers and search.covers[place - 1].at_least > count)
-        yield Point(count, float(search.bounds[place]), at_least, named(search, place), is_least)
+        yield Point(count, float(search.bounds[place]), at_least, name_patterns(search, place), is_least)
 
 
-def named(search: Search, place: int) -> tuple[int, ...]:
+def name_patterns(search: Search, place: int) -> tuple[int, ...]:
     """Return the numbers of the patterns at a point: the lexicographically first cover.
 
     Covers are of sets that are in no other one, each named by the first pattern that has it.
     """
     table = search.table
-    masks = table.masks(float(search.bounds[place]))
-    kept = np.sort(maximal(masks))
-    sets = as_sets(masks[kept], table.members)
-    found = as_sets(masks[list(search.covers[place].sets)], table.members)
+    masks = table.make_masks(float(search.bounds[place]))
+    kept = np.sort(find_maximal_sets(masks))
+    sets = convert_bits_to_sets(masks[kept], table.members)
+    found = convert_bits_to_sets(masks[list(search.covers[place].sets)], table.members)
     known = {int(np.flatnonzero((sets >= one).all(axis=1))[0]) for one in found}
-    return tuple(kept[list(first_cover(sets, len(known), tuple(sorted(known)), search.deadline))].tolist())
+    return tuple(
+        kept[list(find_first_cover(sets, len(known), tuple(sorted(known)), search.deadline))].tolist()
+    )

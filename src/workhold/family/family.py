@@ -18,13 +18,20 @@ import numpy as np
 from attrs import define, evolve, frozen
 
 from workhold.errors import InputError
-from workhold.errors import listed as words_listed
-from workhold.family.covering import LossTable, Point, curve_of, table_of
-from workhold.family.members import OTHER_SIDE, Member, Threshold, member_of, other_side, zero_of_other_side
-from workhold.family.plan import Holding, Plan, SetUp, plan_of
+from workhold.errors import join_words as words_listed
+from workhold.family.covering import LossTable, Point, compute_curve, make_loss_table
+from workhold.family.members import (
+    OTHER_SIDE,
+    Member,
+    Threshold,
+    make_member,
+    make_other_side_query,
+    mirror_zero,
+)
+from workhold.family.plan import Holding, Plan, SetUp, make_plan
 from workhold.family.solver import load_solver
-from workhold.files.result.fixture_text import LENGTH_STEPS, rounded, rounded_degrees
-from workhold.files.result.writer import toolkit_fields
+from workhold.files.result.fixture_text import LENGTH_STEPS, round_degrees, round_to_steps
+from workhold.files.result.writer import make_toolkit_fields
 from workhold.fixels.contacts import CLAMP_TIP
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
@@ -35,7 +42,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
 from workhold.version import __version__
 
-__all__ = ["FORMAT", "Asked", "Family", "LeftOut", "family_of", "family_text"]
+__all__ = ["FORMAT", "Asked", "Family", "LeftOut", "make_family", "write_family_json"]
 
 # The share of the searches in the work, for the progress.
 SEARCHES = 0.95
@@ -59,17 +66,17 @@ class Asked:
     digest: str = ""
     zero: PartZero | None = None
 
-    def lying_as(self, read: Workpiece | None) -> Asked:
+    def turn_over(self, read: Workpiece | None) -> Asked:
         """Return the other side of the part, of a solid as its file was read for it; None of a drawing.
 
         Raises
         ------
         InputError
-            See :func:`workhold.family.members.other_side`.
+            See :func:`workhold.family.members.make_other_side_query`.
         """
         zero = part_zero(self.query.workpiece) if self.zero is None else self.zero
         name = f"{self.name}, {OTHER_SIDE}"
-        return evolve(self, name=name, query=other_side(self.query, read), zero=zero_of_other_side(zero))
+        return evolve(self, name=name, query=make_other_side_query(self.query, read), zero=mirror_zero(zero))
 
 
 @frozen
@@ -113,10 +120,11 @@ class Family:
         """The plan at each point of the curve."""
         if self.table is None:
             return ()
-        return tuple(plan_of(point, self.table, self.members) for point in self.points)
+        return tuple(make_plan(point, self.table, self.members) for point in self.points)
 
     def plan(self, setups: int | None = None) -> Plan:
-        """The plan with the least loss and at most ``setups`` set-ups; None asks for the fewest set-ups.
+        """Return the plan with the least loss and at most ``setups`` set-ups; None asks for the fewest
+        set-ups.
 
         Raises
         ------
@@ -133,7 +141,7 @@ class Family:
         return fitting[0 if setups is None else -1]
 
 
-def family_of(
+def make_family(
     asked: Sequence[Asked],
     *,
     thresholds: Sequence[Threshold] = (),
@@ -172,7 +180,7 @@ def family_of(
     ...     return Workpiece.from_loops("", [[[0, 0, 0], [width, 0, 0], [width / 3, height, 0]]])
     >>> sizes = (40, 35), (50, 40), (62, 31)
     >>> parts = [Asked(str(size), Query(triangle(*size), vise, rank_by=by)) for size in sizes]
-    >>> [(point.setups, round(point.loss, 2)) for point in family_of(parts).points]
+    >>> [(point.setups, round(point.loss, 2)) for point in make_family(parts).points]
     [(1, 1.06), (2, 1.03), (3, 1.0)]
     """
     load_solver()
@@ -205,25 +213,25 @@ def family_of(
         query = evolve(one.query, best=None, listing=None if one.query.toolkit.closes_at_once else "all")
         result = answer(query, threads=threads, progress=share)
         found += len(result)
-        member = member_of(one.name, result, thresholds, unfit, one.path, one.digest, one.zero, same_zero)
+        member = make_member(one.name, result, thresholds, unfit, one.path, one.digest, one.zero, same_zero)
         if len(member.words) and (most_loss is None or member.loss.min() <= most_loss):
             members.append(member)
         else:
-            out.append(LeftOut(one.name, one.path, reason_of(member, bool(len(member.words)))))
+            out.append(LeftOut(one.name, one.path, explain_missing_member(member, bool(len(member.words)))))
     figure = FIGURES[find_figure_number(first.rank_by[0]) or 0]
     if not members:
         return Family(first.toolkit, figure, (), tuple(out), (), None)
-    table = table_of(members)
+    table = make_loss_table(members)
     deadline = None if seconds is None else monotonic() + seconds
 
     def later(fraction: float) -> None:
         progress(SEARCHES + (1.0 - SEARCHES) * fraction, found)
 
-    points = curve_of(table, float("inf") if most_loss is None else most_loss, deadline, later)
+    points = compute_curve(table, float("inf") if most_loss is None else most_loss, deadline, later)
     return Family(first.toolkit, figure, tuple(members), tuple(out), points, table)
 
 
-def reason_of(member: Member, has_patterns: bool) -> str:
+def explain_missing_member(member: Member, has_patterns: bool) -> str:
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
         asked = member.query.asked
@@ -238,10 +246,10 @@ def reason_of(member: Member, has_patterns: bool) -> str:
 FORMAT = "workhold-family/1"
 
 
-def family_text(family: Family) -> str:
+def write_family_json(family: Family) -> str:
     toolkit = family.toolkit
     head = {
-        "toolkit": {"kind": toolkit.kind, **toolkit_fields(toolkit)},
+        "toolkit": {"kind": toolkit.kind, **make_toolkit_fields(toolkit)},
         "figure": family.figure.key,
     }
     parts = [
@@ -249,59 +257,59 @@ def family_text(family: Family) -> str:
             "name": one.name,
             "path": one.path,
             "hash": one.digest,
-            "zero": [length(value) for value in one.zero.point],
+            "zero": [round_length_for_file(value) for value in one.zero.point],
             "fixtures": one.fixtures,
             "patterns": one.patterns,
-            "best": significant(one.best),
+            "best": round_figure_for_file(one.best),
         }
         for one in family.members
     ]
     out = [{"name": one.name, "path": one.path, "reason": one.reason} for one in family.left_out]
-    lines = ",\n".join(plan_text(plan, family) for plan in family.plans)
+    lines = ",\n".join(write_plan_json(plan, family) for plan in family.plans)
     # Every part and every set-up has a line of its own.
     return (
         f'{{"format": "{FORMAT}", "program": "workhold {__version__}", "family": {{\n'
         f"{json.dumps(head)[1:-1]},\n"
-        f'"parts": {listed(parts)},\n'
-        f'"left_out": {listed(out)},\n'
+        f'"parts": {write_list_json(parts)},\n'
+        f'"left_out": {write_list_json(out)},\n'
         f'"curve": [\n{lines}\n]}}}}\n'
     )
 
 
-def listed(entries: list[dict[str, Any]]) -> str:
+def write_list_json(entries: list[dict[str, Any]]) -> str:
     return "[\n" + ",\n".join(json.dumps(entry) for entry in entries) + "\n]" if entries else "[]"
 
 
-def plan_text(plan: Plan, family: Family) -> str:
+def write_plan_json(plan: Plan, family: Family) -> str:
     numbers = {id(member): number for number, member in enumerate(family.members)}
     point = {
         "setups": plan.point.setups,
-        "loss": significant(plan.point.loss),
+        "loss": round_figure_for_file(plan.point.loss),
         "lower_bound": plan.point.at_least,
         "is_least": plan.point.is_least,
         "pegs_moved": plan.moved,
     }
-    setups = ",\n".join(json.dumps(setup_entry(setup, family.toolkit, numbers)) for setup in plan.setups)
+    setups = ",\n".join(json.dumps(make_setup_entry(setup, family.toolkit, numbers)) for setup in plan.setups)
     return f'{json.dumps(point)[:-1]}, "plan": [\n{setups}]}}'
 
 
-def setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict[str, Any]:
+def make_setup_entry(setup: SetUp, toolkit: Toolkit, numbers: dict[int, int]) -> dict[str, Any]:
     """Return a set-up as it is written; ``numbers`` are those of members."""
     fixture = setup.standing.fixture
     return {
         "pattern": {
             "type": fixture.type,
             **({"direction": fixture.direction} if toolkit.tips else {}),
-            "pegs": [peg_entry(peg, toolkit) for peg in fixture.placed],
+            "pegs": [make_peg_entry(peg, toolkit) for peg in fixture.placed],
         },
         "pegs_to_place": setup.moved,
-        "parts": [holding_entry(one, toolkit, numbers[id(one.member)]) for one in setup.holdings],
+        "parts": [make_holding_entry(one, toolkit, numbers[id(one.member)]) for one in setup.holdings],
     }
 
 
-def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
+def make_peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
     """Return where a peg of a pattern stands: its hole, or the line of a clamp of which no more is known."""
-    carrier, place = toolkit.carrier(peg.carrier), {"column": peg.column, "row": peg.row}
+    carrier, place = toolkit.find_carrier(peg.carrier), {"column": peg.column, "row": peg.row}
     key, name = carrier.written_as
     if carrier.contact is not CLAMP_TIP:
         return {key: name, **place}
@@ -309,37 +317,37 @@ def peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
     return {key: name, "direction": carrier.direction, carrier.line: place[carrier.line], "hole": hole}
 
 
-def holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
+def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
     fixture = one.fixture
     entry = {
         "part": number,
         "fixture": one.number,
         "turned": one.turned,
         "pose": {
-            "theta_deg": float(rounded_degrees(fixture.pose.theta_deg)),
-            "x": length(fixture.pose.x),
-            "y": length(fixture.pose.y),
+            "theta_deg": float(round_degrees(fixture.pose.theta_deg)),
+            "x": round_length_for_file(fixture.pose.x),
+            "y": round_length_for_file(fixture.pose.y),
         },
-        **opening_entry(fixture, toolkit),
-        "zero": [length(value) for value in fixture.pose.apply(*one.member.zero.point)],
-        "figure": significant(one.figure),
-        "loss": significant(one.loss),
+        **make_opening_entry(fixture, toolkit),
+        "zero": [round_length_for_file(value) for value in fixture.pose.apply(*one.member.zero.point)],
+        "figure": round_figure_for_file(one.figure),
+        "loss": round_figure_for_file(one.loss),
     }
     if not one.in_place:
-        entry["pegs"] = [peg_entry(peg, toolkit) for peg in fixture.pegs]
+        entry["pegs"] = [make_peg_entry(peg, toolkit) for peg in fixture.pegs]
     return entry
 
 
-def opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
+def make_opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
     """Return what is set for a part: the opening of a vise, or the strokes or places of clamps."""
-    lengths = [length(setting.length) for setting in list_length_settings(fixture, toolkit)]
+    lengths = [round_length_for_file(setting.length) for setting in list_length_settings(fixture, toolkit)]
     return {"opening": lengths[0] if len(lengths) == 1 else lengths}
 
 
-def length(value: float) -> float:
-    return float(rounded(np.array([value]), LENGTH_STEPS)[0])
+def round_length_for_file(value: float) -> float:
+    return float(round_to_steps(np.array([value]), LENGTH_STEPS)[0])
 
 
-def significant(value: float) -> float | None:
+def round_figure_for_file(value: float) -> float | None:
     """Return a figure as it is written; None where it is not finite."""
     return float(f"{value:.12g}") if isfinite(value) else None

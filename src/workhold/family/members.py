@@ -19,9 +19,14 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
 from workhold.errors import InputError
-from workhold.family.patterns import half_turn, pattern_words, turned, zero_words
-from workhold.listing.canonical_form import changes
-from workhold.listing.ranking import measured
+from workhold.family.patterns import (
+    encode_patterns,
+    encode_zeros,
+    map_carriers_by_half_turn,
+    turn_fixtures_over,
+)
+from workhold.listing.canonical_form import mark_changes
+from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     FIGURE_RANKING,
@@ -51,14 +56,14 @@ __all__ = [
     "RANKINGS",
     "Member",
     "Threshold",
-    "loss_figure_words",
-    "loss_text",
-    "losses",
+    "describe_loss_figure",
+    "format_loss",
+    "compute_losses",
     "may_be_used",
-    "member_of",
-    "other_side",
-    "threshold",
-    "zero_of_other_side",
+    "make_member",
+    "make_other_side_query",
+    "make_threshold",
+    "mirror_zero",
 ]
 
 # A family is asked for what it loses in location; after that what a machinist looks at counts, by how many
@@ -83,7 +88,7 @@ class Threshold:
     value: float
 
 
-def threshold(name: str, value: float) -> Threshold:
+def make_threshold(name: str, value: float) -> Threshold:
     """Return the threshold of a figure named as a user writes it.
 
     Raises
@@ -99,11 +104,11 @@ def threshold(name: str, value: float) -> Threshold:
     return Threshold(FIGURES[number], value)
 
 
-def loss_figure_words(figure: Figure) -> str:
+def describe_loss_figure(figure: Figure) -> str:
     return f"effective {figure.words}" if figure.key == LOCATION else figure.words
 
 
-def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
+def compute_losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
     """Return the losses (N,) of fixtures with values (N,) of a figure: over the best of them, 1 or more.
 
     Beside a best of zero everything else is infinitely worse; what is no number is so, too.
@@ -121,10 +126,10 @@ def losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
     return np.where(values == best, 1.0, np.maximum(np.round(ratio, LOSS_DECIMALS), 1.0))
 
 
-def loss_text(loss: float) -> str:
+def format_loss(loss: float) -> str:
     """Return a loss as it is shown, rounded up, so that what is shown is one within which it is.
 
-    >>> loss_text(1.0), loss_text(1.1871), loss_text(float("inf"))
+    >>> format_loss(1.0), format_loss(1.1871), format_loss(float("inf"))
     ('1.000', '1.188', 'any')
     """
     return f"{ceil(loss * 1000 - 1e-6) / 1000:.3f}" if isfinite(loss) else "any"
@@ -148,12 +153,12 @@ def may_be_used(
 OTHER_SIDE = "side 2"
 
 
-def mirrored(loop: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Vertices (N, 3) of x, y and bulge with x the other way round."""
+def mirror_loop(loop: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the vertices (N, 3) of x, y and bulge with x the other way round."""
     return np.asarray(loop * np.array([-1.0, 1.0, -1.0]) + 0.0)
 
 
-def mirrored_load(load: Load) -> Load:
+def mirror_load(load: Load) -> Load:
     """Return a load on the part as it acts when the part is turned over."""
     low, high = load.directions
     directions = ANY_DIRECTION if (low, high) == ANY_DIRECTION else (180.0 - high, 180.0 - low)
@@ -162,7 +167,7 @@ def mirrored_load(load: Load) -> Load:
     )
 
 
-def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
+def renumber_segments(workpiece: Workpiece) -> dict[int, int]:
     """Return the number of each segment in the part turned over, whose loops run the other way round."""
     out, first = dict[int, int](), 0
     for loop in workpiece.loops:
@@ -171,7 +176,7 @@ def segment_numbers(workpiece: Workpiece) -> dict[int, int]:
     return out
 
 
-def other_side(query: Query, read: Workpiece | None = None) -> Query:
+def make_other_side_query(query: Query, read: Workpiece | None = None) -> Query:
     """Return the query for the part turned over; angles in the vise stay as they are.
 
     Parameters
@@ -188,7 +193,7 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
     >>> from workhold import Vise, Workpiece
     >>> part = Workpiece.from_loops("wedge", [[[0, 0, 0], [40, 0, 0], [10, 30, 0]]])
     >>> vise = Vise(pitch=10, columns=1, peg_radius=3)
-    >>> turned = other_side(Query(part, vise, restrictions=Restrictions(avoid=(1,))))
+    >>> turned = make_other_side_query(Query(part, vise, restrictions=Restrictions(avoid=(1,))))
     >>> turned.workpiece.name, turned.workpiece.loops[0][:, 0].tolist(), turned.restrictions.avoid
     ('wedge, side 2', [0.0, -10.0, -40.0], (1,))
     """
@@ -205,9 +210,9 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
             "both sides as parts of their own."
         )
     else:
-        loops = [mirrored(loop) for loop in part.loops]
+        loops = [mirror_loop(loop) for loop in part.loops]
         workpiece = Workpiece.from_loops(called, loops, departure=part.departure)
-        numbers = segment_numbers(part)
+        numbers = renumber_segments(part)
         # A number that no face has is refused where the part as it is drawn is asked for.
         avoid, touch = (
             [numbers.get(number, number) for number in faces] for faces in (asked.avoid, asked.touch)
@@ -217,15 +222,15 @@ def other_side(query: Query, read: Workpiece | None = None) -> Query:
         workpiece=workpiece,
         restrictions=Restrictions(
             avoid=avoid,
-            zones=[make_zone(mirrored(zone.loop).tolist()) for zone in asked.zones],
+            zones=[make_zone(mirror_loop(zone.loop).tolist()) for zone in asked.zones],
             angles=asked.angles,
             touch=touch,
         ),
-        loads=[mirrored_load(load) for load in query.loads],
+        loads=[mirror_load(load) for load in query.loads],
     )
 
 
-def zero_of_other_side(zero: PartZero) -> PartZero:
+def mirror_zero(zero: PartZero) -> PartZero:
     """Return a part's zero in the coordinates of the part turned over: the same point of the part."""
     x, y = zero.point
     return PartZero((0.0 - x, y), zero.words)
@@ -273,7 +278,7 @@ class Member:
     table: FixtureTable
 
 
-def member_of(
+def make_member(
     name: str,
     result: Result,
     thresholds: Sequence[Threshold] = (),
@@ -291,30 +296,30 @@ def member_of(
     """
     query = result.query
     figure = FIGURES[find_figure_number(query.rank_by[0]) or 0]
-    table, number = with_half_turns(result.table, query)
+    table, number = add_half_turns(result.table, query)
     values = select_figure_column(table.quality, figure)
     if figure.key == LOCATION:
         # A part that is held to a hundredth, but aslant, is not held well.
         values = EffectiveErrors.of(query).errors(table)
     good = may_be_used(table, (), query.tolerance, unfit)
     loss = np.full(len(table), np.inf)
-    loss[good] = losses(values[good], figure)
+    loss[good] = compute_losses(values[good], figure)
     best = float(values[good][np.argmin(loss[good])]) if good.any() else float("nan")
     used = np.flatnonzero(good & may_be_used(table, thresholds, query.tolerance, unfit))
-    words, cost, turn = pattern_words(table.take(used), query.toolkit), loss[used], used >= len(result)
-    count = distinct_patterns(words, number[used], turn)
+    words, cost, turn = encode_patterns(table.take(used), query.toolkit), loss[used], used >= len(result)
+    count = count_distinct_patterns(words, number[used], turn)
     zero = part_zero(query.workpiece) if zero is None else zero
     if same_zero:
-        words = np.concatenate([words, zero_words(table.take(used), query.toolkit, zero)], axis=1)
+        words = np.concatenate([words, encode_zeros(table.take(used), query.toolkit, zero)], axis=1)
     # Rows are ranked, and sorting keeps that order: of equal losses the first is the best.
     order = np.lexsort([cost, *words.T[::-1]])
-    first = order[changes(list(words[order].T))]
-    kept = spilled(table.take(used[first]))
+    first = order[mark_changes(list(words[order].T))]
+    kept = spill_to_disk(table.take(used[first]))
     chosen = words[first], cost[first], number[used[first]], turn[first], kept
     return Member(name, path, digest, query, zero, len(result), count, best, *chosen)
 
 
-def distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:
+def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:
     """Return the number of patterns (N, W) when one and its half turn count once.
 
     ``number`` (N,) are the numbers of the fixtures, and ``turn`` (N,) whether they are after the half turn.
@@ -328,12 +333,12 @@ def distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]
         ahead[number[some]] = np.where((one[rows, place] < other[rows, place])[:, None], one, other)
     used = ahead[np.unique(number)]
     order = np.lexsort(used.T[::-1])
-    return int(changes(list(used[order].T)).sum())
+    return int(mark_changes(list(used[order].T)).sum())
 
 
-def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, IntArray]:
-    """Fixtures, and after them their images under half a turn of everything; and the place (N,) of each in
-    the list.
+def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, IntArray]:
+    """Return the fixtures, and after them their images under half a turn of everything; and the place (N,) of
+    each in the list.
 
     There is an image where the arrangement stays as it is, and neither a range of angles nor blocked holes
     forbid it.
@@ -342,27 +347,27 @@ def with_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, In
     tables, numbers = [table], [np.arange(len(table))]
     blocked = any(plate.blocked for plate in toolkit.plates)
     for arrangement in range(len(toolkit.arrangements)):
-        places = half_turn(toolkit, arrangement)
+        places = map_carriers_by_half_turn(toolkit, arrangement)
         if blocked or places is None:
             continue
         kind = table.arrangement == arrangement
-        number = np.flatnonzero(kind & at_angle(np.degrees(table.theta) + 180.0, query))
+        number = np.flatnonzero(kind & are_at_allowed_angle(np.degrees(table.theta) + 180.0, query))
         if len(number):
-            after = turned(table.take(number), toolkit)
+            after = turn_fixtures_over(table.take(number), toolkit)
             # Where another jaw stands still the location error changes; the locators of a plate stay what
             # they are.
-            tables.append(after if places[0] == 0 else measured(after, Problem.of(query)))
+            tables.append(after if places[0] == 0 else measure_table(after, Problem.of(query)))
             numbers.append(number)
     return FixtureTable.joined(tables), np.concatenate(numbers)
 
 
-def at_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
+def are_at_allowed_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
     """Return whether orientations (N,) in degrees lie in a range allowed; without ranges all do."""
     return np.asarray(lie_in_angle_ranges(degrees, query.restrictions.angles))
 
 
-def spilled(table: FixtureTable) -> FixtureTable:
-    """A table that takes little memory, however long it is; refuses a disk without room for temporary files."""
+def spill_to_disk(table: FixtureTable) -> FixtureTable:
+    """Return a table that takes little memory, however long it is; refuse a disk without room for temporary files."""
     if sum(column.nbytes for column in table.columns) < IN_MEMORY:
         return table
     names = [one.name for one in fields(FixtureTable)]

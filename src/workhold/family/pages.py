@@ -17,8 +17,8 @@ from math import ceil, floor, isfinite, log10
 from attrs import frozen
 
 from workhold.drawing.annotation import scale_bar
-from workhold.drawing.bench import Bench, bench_of, draw_bench, draw_zero
-from workhold.drawing.panel import plural
+from workhold.drawing.bench import Bench, draw_bench, draw_zero, make_bench
+from workhold.drawing.panel import format_count
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
 from workhold.drawing.scene import (
     BLACK,
@@ -28,13 +28,13 @@ from workhold.drawing.scene import (
     LengthUnit,
     Scene,
     View,
-    shortened,
-    text_width,
-    wrapped,
+    measure_text,
+    shorten_text,
+    wrap_text,
 )
 from workhold.family.covering import Point
 from workhold.family.family import Family
-from workhold.family.members import loss_figure_words, loss_text
+from workhold.family.members import describe_loss_figure, format_loss
 from workhold.family.plan import Holding, Plan, SetUp
 from workhold.model.quality import Figure
 from workhold.model.setup import list_length_settings
@@ -58,28 +58,28 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
     ----------
     chosen : the point whose plan was picked, which is marked.
     """
-    held = f"{plural(len(family.members), 'part')} {family.toolkit.wording.inside}"
-    scene = Scene.page(LANDSCAPE, f"{held}: set-ups and loss")
+    held = f"{format_count(len(family.members), 'part')} {family.toolkit.wording.inside}"
+    scene = Scene.make_page(LANDSCAPE, f"{held}: set-ups and loss")
     width, height = LANDSCAPE
     group = scene.group("heading")
-    group.text((EDGE, EDGE + 12), held, 26, bold=True)
+    group.add_text((EDGE, EDGE + 12), held, 26, bold=True)
     words = (
-        f"The loss is the {loss_figure_words(family.figure)} over the best that each part has; at each point that "
+        f"The loss is the {describe_loss_figure(family.figure)} over the best that each part has; at each point that "
         "of the worst part."
     )
-    group.text((EDGE, EDGE + 44), words, 15, fill=GREY)
+    group.add_text((EDGE, EDGE + 44), words, 15, fill=GREY)
     room = Box(EDGE + AT_LEFT, EDGE + CURVE_HEADER, width - EDGE - 30, height - EDGE - BELOW)
     points = [point for point in family.points if isfinite(point.loss)]
     if not points:
-        group.text(room.center, "No number of set-ups has a loss that is finite.", 16, "middle")
-        return scene.svg()
+        group.add_text(room.center, "No number of set-ups has a loss that is finite.", 16, "middle")
+        return scene.to_svg()
     draw_axes_and_points(scene, room, points, chosen)
-    return scene.svg()
+    return scene.to_svg()
 
 
 def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: Point | None) -> None:
     last, most = points[-1].setups, points[0].loss
-    step = nice_step(max(most - 1.0, 0.02) / MOST_LINES)
+    step = choose_axis_step(max(most - 1.0, 0.02) / MOST_LINES)
     top = 1.0 + step * max(ceil((most - 1.0) / step - 1e-9), 1)
     first = points[0].setups
 
@@ -91,46 +91,46 @@ def draw_axes_and_points(scene: Scene, room: Box, points: list[Point], chosen: P
     decimals = max(0, -floor(log10(step) + 1e-9))
     for k in range(round((top - 1.0) / step) + 1):
         y = at(first, 1.0 + k * step)[1]
-        axes.line([(room.x0, y), (room.x1, y)], GRID if k else BLACK, 1.0)
-        axes.text((room.x0 - 10, y), f"{1.0 + k * step:.{max(decimals, 1)}f}", 14, "end")
+        axes.add_line([(room.x0, y), (room.x1, y)], GRID if k else BLACK, 1.0)
+        axes.add_text((room.x0 - 10, y), f"{1.0 + k * step:.{max(decimals, 1)}f}", 14, "end")
     every = next(k for k in (1, 2, 5, 10, 20, 50, 100, 1000) if room.width / (last - first + 1) * k >= 26)
     for setups in range(first, last + 1):
         if (setups - first) % every == 0 or setups == last:
             x = at(setups, 1.0)[0]
-            axes.line([(x, room.y1), (x, room.y1 + 6)], BLACK, 1.0)
-            axes.text((x, room.y1 + 20), str(setups), 14, "middle")
-    axes.text((room.center[0], room.y1 + 48), "set-ups", 15, "middle", bold=True)
-    axes.text((room.x0 - 62, room.center[1]), "worst loss", 15, "middle", bold=True, turned=90)
+            axes.add_line([(x, room.y1), (x, room.y1 + 6)], BLACK, 1.0)
+            axes.add_text((x, room.y1 + 20), str(setups), 14, "middle")
+    axes.add_text((room.center[0], room.y1 + 48), "set-ups", 15, "middle", bold=True)
+    axes.add_text((room.x0 - 62, room.center[1]), "worst loss", 15, "middle", bold=True, turned=90)
     curve = scene.group("curve")
     for one, other in pairwise(points):
         # Numbers of set-ups in between lose as much as the smaller one.
         corner = at(other.setups, one.loss)
-        curve.line([at(one.setups, one.loss), corner], CURVE_LINE, 2.0)
-        curve.line([corner, at(other.setups, other.loss)], CURVE_LINE, 1.2, stroke_dasharray="3 4")
+        curve.add_line([at(one.setups, one.loss), corner], CURVE_LINE, 2.0)
+        curve.add_line([corner, at(other.setups, other.loss)], CURVE_LINE, 1.2, stroke_dasharray="3 4")
     taken: list[Box] = []
     for point in points:
         here, is_chosen = at(point.setups, point.loss), point == chosen
         proven = point.is_least and point.at_least == point.setups
-        curve.circle(
+        curve.add_circle(
             here,
             8.0 if is_chosen else 5.5,
             CHOSEN if is_chosen else CURVE_LINE if proven else "#ffffff",
             CURVE_LINE,
             1.6,
         )
-        words = loss_text(point.loss) + ("" if proven else " or less")
+        words = format_loss(point.loss) + ("" if proven else " or less")
         box = Box(
-            here[0] + 6, here[1] - 24, here[0] + 10 + text_width(words, 13, bold=is_chosen), here[1] - 8
+            here[0] + 6, here[1] - 24, here[0] + 10 + measure_text(words, 13, bold=is_chosen), here[1] - 8
         )
         if is_chosen or all(box.overlap(other) == 0 for other in taken):
             taken.append(box)
-            curve.text((box.x0, here[1] - 16), words, 13, bold=is_chosen, halo=2.5)
+            curve.add_text((box.x0, here[1] - 16), words, 13, bold=is_chosen, halo=2.5)
 
 
-def nice_step(least: float) -> float:
+def choose_axis_step(least: float) -> float:
     """Return the smallest of 1, 2 or 5 times a power of ten that is not below ``least``.
 
-    >>> nice_step(0.07), nice_step(0.2), nice_step(3)
+    >>> choose_axis_step(0.07), choose_axis_step(0.2), choose_axis_step(3)
     (0.1, 0.2, 5.0)
     """
     power = 10.0 ** floor(log10(least))
@@ -170,55 +170,55 @@ def draw_setups(plan: Plan, figure: Figure, day: date, unit: Unit = MILLIMETRE) 
     day : the date written on the sheets.
     """
     first = plan.setups[0].holdings[0].member.query.toolkit.carriers[0]
-    titles = Titles(len(plan.setups), figure, LengthUnit.suiting(unit, min(first.pitch)), day)
+    titles = Titles(len(plan.setups), figure, LengthUnit.from_typical_length(unit, min(first.pitch)), day)
     pages: list[Scene] = []
     before: SetUp | None = None
     for number, setup in enumerate(plan.setups, 1):
-        pages += setup_pages(setup, before, number, titles)
+        pages += draw_setup_pages(setup, before, number, titles)
         before = setup
     for place, page in enumerate(pages, 1):
         draw_foot(page, titles, f"page {place} of {len(pages)}")
-    return tuple(page.svg() for page in pages)
+    return tuple(page.to_svg() for page in pages)
 
 
-def setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Iterator[Scene]:
+def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Iterator[Scene]:
     """Yield the pages of a set-up without their feet."""
     benches = [
-        (one, bench_of(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
+        (one, make_bench(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
         for one in setup.holdings
     ]
     beside, rest = benches[:MOST_BESIDE], benches[MOST_BESIDE:]
     width, height = LANDSCAPE
     whole = Box(EDGE, EDGE + HEADER, width - EDGE, height - EDGE - FOOTER)
     split = whole.x0 + PLAN * whole.width
-    scene = new_page(setup, before, number, titles)
+    scene = begin_page(setup, before, number, titles)
     draw_pegs_plan(scene, setup, Box(whole.x0, whole.y0, split - 2 * GAP, whole.y1), titles.lengths)
     draw_parts(scene, beside, Box(split, whole.y0, whole.x1, whole.y1), titles)
     yield scene
     for some in (rest[k : k + MOST_ALONE] for k in range(0, len(rest), MOST_ALONE)):
-        scene = new_page(setup, before, number, titles)
+        scene = begin_page(setup, before, number, titles)
         draw_parts(scene, some, whole, titles)
         yield scene
 
 
-def new_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Scene:
+def begin_page(setup: SetUp, before: SetUp | None, number: int, titles: Titles) -> Scene:
     """Return a page with its heading: which set-up, where its pegs stand, and what is moved for it."""
-    heading = f"Set-up {number} of {titles.count}: {plural(len(setup.holdings), 'part')}"
-    scene = Scene.page(LANDSCAPE, heading)
+    heading = f"Set-up {number} of {titles.count}: {format_count(len(setup.holdings), 'part')}"
+    scene = Scene.make_page(LANDSCAPE, heading)
     group = scene.group("heading")
-    group.text((EDGE, EDGE + 12), heading, 26, bold=True)
-    lines = [f"Pegs in {', '.join(holes_of(setup))}.", *heights_words(setup, titles.lengths)]
-    lines += moves_words(setup, before)
+    group.add_text((EDGE, EDGE + 12), heading, 26, bold=True)
+    lines = [f"Pegs in {', '.join(list_holes(setup))}.", *describe_heights(setup, titles.lengths)]
+    lines += describe_moves(setup, before)
     for k, line in enumerate(lines):
-        group.text((EDGE, EDGE + 42 + 20 * k), shortened(line, LINE, LANDSCAPE[0] - 2 * EDGE), LINE)
+        group.add_text((EDGE, EDGE + 42 + 20 * k), shorten_text(line, LINE, LANDSCAPE[0] - 2 * EDGE), LINE)
     return scene
 
 
-def holes_of(setup: SetUp) -> list[str]:
+def list_holes(setup: SetUp) -> list[str]:
     return [peg.hole for peg in setup.standing.fixture.placed]
 
 
-def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
+def describe_heights(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
     """Say at which heights carriers with heights of their own touch, where the parts are solids."""
     toolkit = setup.standing.member.query.toolkit
     if all(one.member.query.workpiece.solid is None for one in setup.holdings):
@@ -226,14 +226,14 @@ def heights_words(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
     for elements, (low, high) in {
         one.elements: one.heights for one in toolkit.carriers if one.heights
     }.items():
-        heights = f"{lengths.number(low)} and {lengths.words(high)}"
+        heights = f"{lengths.number(low)} and {lengths.format_length(high)}"
         yield f"{elements.capitalize()}: touch between {heights} above the plane on which the parts lie."
 
 
-def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
+def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
     if before is None:
         return
-    here, there = Counter(holes_of(setup)), Counter(holes_of(before))
+    here, there = Counter(list_holes(setup)), Counter(list_holes(before))
     placed, taken = sorted((here - there).elements()), sorted((there - here).elements())
     if placed:
         yield (
@@ -247,50 +247,52 @@ def moves_words(setup: SetUp, before: SetUp | None) -> Iterator[str]:
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
     one = setup.standing
     workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
-    bench = bench_of(one.fixture, workpiece, toolkit)
+    bench = make_bench(one.fixture, workpiece, toolkit)
     inner = Box(room.x0 + LEFT, room.y0 + TOP, room.x1 - RIGHT, room.y1 - BOTTOM)
-    view = View.fitting(bench.extent, inner)
+    view = View.fit_box(bench.extent, inner)
     draw_plan(scene, bench, view, workpiece, room, lengths)
     words = f"The plan shows {one.member.name}."
-    scene.text((room.x0, room.y1 - 4), shortened(words, 12, room.width), 12, fill=GREY)
+    scene.add_text((room.x0, room.y1 - 4), shorten_text(words, 12, room.width), 12, fill=GREY)
 
 
 def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box, titles: Titles) -> None:
-    rows = [table_row(one, titles) for one, _ in benches]
+    rows = [make_table_row(one, titles) for one, _ in benches]
     notes = [
-        line for note in notes_of([one for one, _ in benches]) for line in wrapped(note, SMALL, room.width)
+        line
+        for note in list_notes([one for one, _ in benches])
+        for line in wrap_text(note, SMALL, room.width)
     ]
-    head = table_head(benches[0][0], titles)
-    widths = column_widths(head, rows, room.width)
+    head = make_table_head(benches[0][0], titles)
+    widths = compute_column_widths(head, rows, room.width)
     for most in range(MOST_NAME_LINES, 0, -1):
         lines = sum(len(name_lines(row[0], widths[0], most)) for row in rows)
         high = ROW * (lines + 2) + LINE * len(notes) + GAP
         if high <= MOST_TABLE * room.height:
             break
     draw_table(scene, Box(room.x0, room.y1 - high + GAP / 2, room.x1, room.y1), head, rows, notes, most)
-    cells = grid(len(benches), Box(room.x0, room.y0, room.x1, room.y1 - high - FOOTER))
+    cells = make_grid(len(benches), Box(room.x0, room.y0, room.x1, room.y1 - high - FOOTER))
     rooms = [Box(cell.x0 + 6, cell.y0 + 6, cell.x1 - 6, cell.y1 - CAPTION) for cell in cells]
     scale = min(
-        View.fitting(bench.extent, inner).scale for (_, bench), inner in zip(benches, rooms, strict=True)
+        View.fit_box(bench.extent, inner).scale for (_, bench), inner in zip(benches, rooms, strict=True)
     )
     for (one, bench), cell, inner in zip(benches, cells, rooms, strict=True):
         group = scene.group("part-cell")
-        group.rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
-        view = View.fitting(bench.extent, inner, scale)
+        group.add_rectangle(cell, "#ffffff", "#b9bec6", 1.0, 5)
+        view = View.fit_box(bench.extent, inner, scale)
         draw_bench(group, bench, view, weight=0.55, longest=24.0, axes=False)
         zero = view(bench.fixture.pose.apply(*one.member.zero.point))
         if inner.grown(4).contains(Box(*zero, *zero)):
             draw_zero(group, zero, 4.0)
-        name = shortened(one.member.name, NAME, cell.width - 12, bold=True)
-        group.text((cell.x0 + 6, cell.y1 - CAPTION / 2), name, NAME, bold=True)
+        name = shorten_text(one.member.name, NAME, cell.width - 12, bold=True)
+        group.add_text((cell.x0 + 6, cell.y1 - CAPTION / 2), name, NAME, bold=True)
     bottom = room.y1 - high - FOOTER + 20
     scale_bar(
         scene, (room.x0, bottom), scale, titles.lengths, more=", all parts to this scale; the disc is X0 Y0"
     )
 
 
-def grid(count: int, room: Box) -> list[Box]:
-    """Equal cells for so many parts in a room, row by row, as nearly square as there can be."""
+def make_grid(count: int, room: Box) -> list[Box]:
+    """Return the equal cells for so many parts in a room, row by row, as nearly square as there can be."""
     ways = [(across, -(-count // across)) for across in range(1, count + 1)]
 
     def size(way: tuple[int, int]) -> float:
@@ -305,7 +307,7 @@ def grid(count: int, room: Box) -> list[Box]:
     return [Box(x, y, x + width, y + height) for x, y in corners]
 
 
-def table_head(one: Holding, titles: Titles) -> list[str]:
+def make_table_head(one: Holding, titles: Titles) -> list[str]:
     sign, of = titles.lengths.sign, titles.figure.unit
     settings = list_length_settings(one.fixture, one.member.query.toolkit)
     unit = sign if of == "mm" else of
@@ -316,7 +318,7 @@ def table_head(one: Holding, titles: Titles) -> list[str]:
     return ["part", *lengths, "turned θ", f"{titles.figure.words} {unit}".strip(), "loss", "fixture"]
 
 
-def table_row(one: Holding, titles: Titles) -> list[str]:
+def make_table_row(one: Holding, titles: Titles) -> list[str]:
     fixture, number = one.fixture, titles.lengths.number
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [
@@ -326,13 +328,13 @@ def table_row(one: Holding, titles: Titles) -> list[str]:
         number(y),
         f"{fixture.pose.written_deg:z.4f}°",
         number(one.figure) if titles.figure.unit == "mm" else f"{one.figure:.{titles.figure.decimals}f}",
-        loss_text(one.loss),
+        format_loss(one.loss),
         f"{one.number:,}{'′' if one.turned else ''}{'' if one.in_place else '*'}",
     ]
 
 
-def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
-    """The notes below the table: the signs, the zero, and the parts whose pegs stand in other columns."""
+def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
+    """Yield the notes below the table: the signs, the zero, and the parts whose pegs stand in other columns."""
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
@@ -348,13 +350,13 @@ def notes_of(holdings: Sequence[Holding]) -> Iterator[str]:
             yield f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}."
 
 
-def column_widths(head: list[str], rows: list[list[str]], width: float) -> list[float]:
-    """Widths of the columns of the table of parts; the names have what the others leave."""
-    heads = [in_two(words) for words in head]
+def compute_column_widths(head: list[str], rows: list[list[str]], width: float) -> list[float]:
+    """Return the widths of the columns of the table of parts; the names have what the others leave."""
+    heads = [split_heading(words) for words in head]
     widths = [
         max(
-            *(text_width(words, WORDS, bold=True) for words in heads[k]),
-            *(text_width(row[k], WORDS) for row in rows),
+            *(measure_text(words, WORDS, bold=True) for words in heads[k]),
+            *(measure_text(row[k], WORDS) for row in rows),
         )
         + 14
         for k in range(len(head))
@@ -365,12 +367,12 @@ def column_widths(head: list[str], rows: list[list[str]], width: float) -> list[
 
 
 def name_lines(name: str, width: float, most: int) -> list[str]:
-    """A part's name in as many lines as it takes in its column, the last cut off where these are too many."""
+    """Return a part's name in as many lines as it takes in its column, the last cut off where these are too many."""
     room = width - 8
-    lines = wrapped(name, WORDS, room, bold=True) or [""]
+    lines = wrap_text(name, WORDS, room, bold=True) or [""]
     if len(lines) > most:
         lines = [*lines[: most - 1], " ".join(lines[most - 1 :])]
-    return [shortened(line, WORDS, room, bold=True) for line in lines]
+    return [shorten_text(line, WORDS, room, bold=True) for line in lines]
 
 
 def draw_table(
@@ -380,8 +382,8 @@ def draw_table(
 
     Names have ``most`` lines at most.
     """
-    widths = column_widths(head, rows, room.width)
-    heads = [in_two(words) for words in head]
+    widths = compute_column_widths(head, rows, room.width)
+    heads = [split_heading(words) for words in head]
     ends = [room.x0 + sum(widths[: k + 1]) for k in range(len(widths))]
     group = scene.group("table")
     lines = [[pair[k] for pair in heads] for k in (0, 1)]
@@ -389,23 +391,23 @@ def draw_table(
     for place, row in enumerate([*lines, *rows]):
         bold, names = place < len(lines), name_lines(row[0], widths[0], most)
         for k, name in enumerate(names):
-            group.text((room.x0, top + ROW * (k + 0.5)), name, WORDS, bold=True)
+            group.add_text((room.x0, top + ROW * (k + 0.5)), name, WORDS, bold=True)
         for end, word in zip(ends[1:], row[1:], strict=True):
-            group.text((end, top + ROW / 2), word, WORDS, "end", bold=bold)
+            group.add_text((end, top + ROW / 2), word, WORDS, "end", bold=bold)
         top += ROW * len(names)
         if not bold:
-            group.line([(room.x0, top), (room.x1, top)], RULE, 0.6)
+            group.add_line([(room.x0, top), (room.x1, top)], RULE, 0.6)
     y = room.y0 + ROW * len(lines)
-    group.line([(room.x0, y), (room.x1, y)], GREY, 0.8)
+    group.add_line([(room.x0, y), (room.x1, y)], GREY, 0.8)
     y = top + 4
     for k, note in enumerate(notes):
-        group.text((room.x0, y + LINE * (k + 0.5)), note, SMALL, fill=GREY)
+        group.add_text((room.x0, y + LINE * (k + 0.5)), note, SMALL, fill=GREY)
 
 
-def in_two(words: str) -> tuple[str, str]:
+def split_heading(words: str) -> tuple[str, str]:
     """Return a heading in two lines as short as they can be, the first of them empty where there is one word.
 
-    >>> in_two("part"), in_two("location error mm")
+    >>> split_heading("part"), split_heading("location error mm")
     (('', 'part'), ('location', 'error mm'))
     """
     some = words.split()
@@ -416,4 +418,4 @@ def in_two(words: str) -> tuple[str, str]:
 def draw_foot(scene: Scene, titles: Titles, page: str) -> None:
     width, height = LANDSCAPE
     words = f"{titles.day.isoformat()} · workhold {__version__} · {page}"
-    scene.text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)
+    scene.add_text((width - EDGE, height - EDGE - 4), words, 11, "end", fill=GREY)

@@ -15,20 +15,20 @@ from numpy.typing import NDArray
 from workhold.conventions import GAP_SLACK
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.listing.canonical_form import packed
+from workhold.listing.canonical_form import pack_integers
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.setup import PartZero
 
 __all__ = [
     "NOTHING",
     "Hole",
-    "half_turn",
-    "holes_of",
-    "moved_onto",
-    "pattern_words",
-    "shifted",
-    "turned",
-    "zero_words",
+    "map_carriers_by_half_turn",
+    "list_holes",
+    "move_onto_pattern",
+    "encode_patterns",
+    "shift_fixture",
+    "turn_fixtures_over",
+    "encode_zeros",
 ]
 
 IntArray = NDArray[np.int64]
@@ -43,13 +43,13 @@ SAME_ZERO, SAME_TURN, BEGINNING = 1e-3, 1e-4, 0.3819660113
 NO_PLACE = 1 << 40
 
 
-def column_groups(toolkit: Toolkit) -> list[int]:
-    """The group of carriers that share their columns, for each carrier: a jaw that slides has its own."""
+def group_carriers_by_columns(toolkit: Toolkit) -> list[int]:
+    """Return the group of carriers that share their columns, for each carrier: a jaw that slides has its own."""
     slides = [carrier.has_lattice and carrier.travel is not None for carrier in toolkit.carriers]
     return [number if own else 0 for number, own in enumerate(slides)]
 
 
-def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
+def map_carriers_by_half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
     """Return the carrier whose place each carrier takes after half a turn of everything.
 
     It is None where the turn does not leave the arrangement as it is.
@@ -65,41 +65,45 @@ def half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
     return places
 
 
-def pattern_words(table: FixtureTable, toolkit: Toolkit) -> IntArray:
-    """The patterns (N, W) of fixtures as they stand; their lexicographic order is that of identities."""
-    carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
+def encode_patterns(table: FixtureTable, toolkit: Toolkit) -> IntArray:
+    """Return the patterns (N, W) of fixtures as they stand; their lexicographic order is that of identities."""
+    carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
     counts = np.array([one.counted for one in toolkit.carriers])[carriers]
-    groups = np.array(column_groups(toolkit))[carriers]
+    groups = np.array(group_carriers_by_columns(toolkit))[carriers]
     column, row = table.column.astype(np.int64), table.row.astype(np.int64)
     for group in range(int(groups.max(initial=0)) + 1):
         inside = counts[:, :, 0] & (groups == group)
-        column = np.where(groups == group, column - least(column, inside), column)
+        column = np.where(groups == group, column - find_least_counted(column, inside), column)
     if not toolkit.datum.fixes_rows:
-        row = row - least(row, counts[:, :, 1])
+        row = row - find_least_counted(row, counts[:, :, 1])
     column, row = np.where(counts[:, :, 0], column, 0), np.where(counts[:, :, 1], row, 0)
     order = np.argsort((carriers << 40) + (column << 20) + row, axis=1, kind="stable")
     column, row = (np.take_along_axis(values, order, axis=1) for values in (column, row))
     kind = table.arrangement.astype(np.int64)[:, None]
-    return np.column_stack(packed((kind, MOST_ARRANGEMENTS), (column, MOST_STEPS), (row, MOST_STEPS)))
+    return np.column_stack(pack_integers((kind, MOST_ARRANGEMENTS), (column, MOST_STEPS), (row, MOST_STEPS)))
 
 
-def least(values: IntArray, inside: BoolArray) -> IntArray:
+def find_least_counted(values: IntArray, inside: BoolArray) -> IntArray:
     """Return the smallest (N, 1) of the values (N, P) that count, 0 where none does."""
     found = np.where(inside, values, NO_PLACE).min(axis=1, keepdims=True, initial=NO_PLACE)
     return np.where(found == NO_PLACE, 0, found)
 
 
-def zero_words(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArray:
-    """Part zero relative to the pegs of fixtures, and the turn of the part, (N, 3) in whole steps.
+def encode_zeros(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntArray:
+    """Return the part zero relative to the pegs of fixtures, and the turn of the part, (N, 3) in whole steps.
 
     Fixtures of one pattern have the same steps where the parts' zeros are at one place and their turns equal.
     """
-    carriers = toolkit.peg_carriers(table.arrangement).astype(np.int64)
+    carriers = toolkit.find_peg_carriers(table.arrangement).astype(np.int64)
     counts = np.array([one.counted for one in toolkit.carriers])[carriers]
-    still = np.array(column_groups(toolkit))[carriers] == 0
+    still = np.array(group_carriers_by_columns(toolkit))[carriers] == 0
     pitch = toolkit.carriers[0].pitch
-    column = least(table.column.astype(np.int64), counts[:, :, 0] & still)[:, 0]
-    row = 0 if toolkit.datum.fixes_rows else least(table.row.astype(np.int64), counts[:, :, 1])[:, 0]
+    column = find_least_counted(table.column.astype(np.int64), counts[:, :, 0] & still)[:, 0]
+    row = (
+        0
+        if toolkit.datum.fixes_rows
+        else find_least_counted(table.row.astype(np.int64), counts[:, :, 1])[:, 0]
+    )
     x, y = rotate_vectors(zero.point[0], zero.point[1], table.theta)
     degrees = np.degrees(table.theta) + SAME_TURN / 2
     places = [
@@ -117,13 +121,13 @@ Hole = tuple[int, int, int]
 NOTHING = 1 << 40
 
 
-def shifted(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
+def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: int) -> FixtureTable:
     """Return a fixture moved by whole columns and rows; the part moves with the first carrier.
 
-    ``columns`` are by group of carriers, see :func:`column_groups`.
+    ``columns`` are by group of carriers, see :func:`group_carriers_by_columns`.
     """
-    carriers = toolkit.peg_carriers(one.arrangement)[0]
-    groups, pitch = column_groups(toolkit), toolkit.carriers[0].pitch
+    carriers = toolkit.find_peg_carriers(one.arrangement)[0]
+    groups, pitch = group_carriers_by_columns(toolkit), toolkit.carriers[0].pitch
     counts = np.array([toolkit.carriers[number].counted for number in carriers])
     steps = np.array([columns.get(groups[number], 0) for number in carriers])
     move = np.array([columns.get(0, 0) * pitch[0], rows * pitch[1]])
@@ -134,18 +138,19 @@ def shifted(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], rows: 
         return evolve(
             moved, jaw_separation=one.jaw_separation + (columns.get(0, 0) - columns.get(1, 0)) * pitch[0]
         )
-    return with_tips(moved, toolkit, tips_of(one, toolkit) + move)
+    return move_tips(moved, toolkit, find_tips(one, toolkit) + move)
 
 
-def turned(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
-    """Fixtures of one arrangement, which half a turn of everything leaves as it is, after that turn.
+def turn_fixtures_over(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
+    """Return the fixtures of one arrangement, which half a turn of everything leaves as it is, after that
+    turn.
 
     They are in the same rows and in the mirrored columns; their figures are those before it.
     """
     if not len(table):
         return table
     number = int(table.arrangement[0])
-    places = half_turn(toolkit, number)
+    places = map_carriers_by_half_turn(toolkit, number)
     assert places is not None
     carriers, pitch = np.array(toolkit.arrangements[number].carriers), np.array(toolkit.carriers[0].pitch)
     in_column, in_row = np.array([toolkit.carriers[number].counted for number in carriers]).T
@@ -178,18 +183,18 @@ def turned(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
     )
     if not toolkit.tips:
         return out
-    return with_tips(out, toolkit, (middle[:, None] - tips_of(table, toolkit))[:, ::-1])
+    return move_tips(out, toolkit, (middle[:, None] - find_tips(table, toolkit))[:, ::-1])
 
 
-def tips_of(table: FixtureTable, toolkit: Toolkit) -> NDArray[np.float64]:
+def find_tips(table: FixtureTable, toolkit: Toolkit) -> NDArray[np.float64]:
     """Return the places (N, K, 2) in mm of the tips of fixtures' clamps."""
-    x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+    x, y = toolkit.compute_hole_places(table.arrangement, table.column, table.row, table.jaw_separation)
     count = 1 if table.jaw_separation.ndim == 1 else table.jaw_separation.shape[1]
     return np.stack([x[:, -count:], y[:, -count:]], axis=2)
 
 
-def with_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) -> FixtureTable:
-    """Fixtures of one arrangement whose clamps have travelled to some places (N, K, 2) in mm."""
+def move_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) -> FixtureTable:
+    """Return the fixtures of one arrangement whose clamps have travelled to some places (N, K, 2) in mm."""
     carriers = toolkit.arrangements[int(table.arrangement[0])].carriers
     travelled = np.zeros(tips.shape[:2])
     for clamp, peg in enumerate(range(len(carriers) - tips.shape[1], len(carriers))):
@@ -201,10 +206,10 @@ def with_tips(table: FixtureTable, toolkit: Toolkit, tips: NDArray[np.float64]) 
     return evolve(table, jaw_separation=travelled.reshape(table.jaw_separation.shape))
 
 
-def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
+def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
     """Return where every peg of a fixture stands, in order; the ends of a wall are left out."""
     out = []
-    carriers = toolkit.peg_carriers(one.arrangement)
+    carriers = toolkit.find_peg_carriers(one.arrangement)
     places = (rows[0].tolist() for rows in (carriers, one.column, one.row))
     for number, column, row in zip(*places, strict=True):
         in_column, in_row = toolkit.carriers[number].counted
@@ -213,17 +218,21 @@ def holes_of(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
     return sorted(out)
 
 
-def moved_onto(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
-    """A fixture moved into the holes of another of its pattern; None where the jaws cannot stand so."""
-    mine, theirs, groups = holes_of(one, toolkit), holes_of(target, toolkit), column_groups(toolkit)
+def move_onto_pattern(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
+    """Return a fixture moved into the holes of another of its pattern; None where the jaws cannot stand so."""
+    mine, theirs, groups = (
+        list_holes(one, toolkit),
+        list_holes(target, toolkit),
+        group_carriers_by_columns(toolkit),
+    )
     steps = {
         groups[number]: column - own
         for (number, own, _), (_, column, _) in reversed(list(zip(mine, theirs, strict=True)))
         if own != NOTHING
     }
     rows = next(row - own for (_, _, own), (_, _, row) in zip(mine, theirs, strict=True) if own != NOTHING)
-    moved = shifted(one, toolkit, steps, rows)
-    if holes_of(moved, toolkit) != theirs:
+    moved = shift_fixture(one, toolkit, steps, rows)
+    if list_holes(moved, toolkit) != theirs:
         return None
     travel = toolkit.moving.travel
     assert travel is not None

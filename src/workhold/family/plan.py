@@ -19,13 +19,23 @@ from numpy.typing import NDArray
 
 from workhold.family.covering import LossTable, Point
 from workhold.family.members import Member
-from workhold.family.patterns import NOTHING, holes_of, moved_onto, shifted
+from workhold.family.patterns import NOTHING, list_holes, move_onto_pattern, shift_fixture
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import find_figure_number
 
-__all__ = ["MOST_EXACT", "Freedom", "Holding", "Plan", "SetUp", "Step", "best_order", "freedom_of", "plan_of"]
+__all__ = [
+    "MOST_EXACT",
+    "Freedom",
+    "Holding",
+    "Plan",
+    "SetUp",
+    "Step",
+    "find_best_order",
+    "find_freedom",
+    "make_plan",
+]
 
 MOST_EXACT = 12
 # The cost of a way that nobody goes.
@@ -59,7 +69,7 @@ class Step:
     moved: int
 
 
-def freedom_of(toolkit: Toolkit) -> Freedom:
+def find_freedom(toolkit: Toolkit) -> Freedom:
     """Return which ways set-ups of a toolkit may be moved: where it has no end."""
     plates, is_counted = toolkit.plates, toolkit.datum.fixes_rows
     return Freedom(
@@ -68,44 +78,46 @@ def freedom_of(toolkit: Toolkit) -> Freedom:
     )
 
 
-def moved(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, int]]:
-    """Holes after a move; a column or row without a meaning stays."""
+def move_holes(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, int]]:
+    """Return the holes after a move; a column or row without a meaning stays."""
     return [
         (one, column if column == NOTHING else column + columns, row if row == NOTHING else row + rows)
         for one, column, row in holes
     ]
 
 
-def moves(before: Holes, after: Holes, freedom: Freedom) -> Iterator[tuple[int, int]]:
-    """Moves that bring a peg of one set-up onto a peg of another, and none."""
+def list_moves(before: Holes, after: Holes, freedom: Freedom) -> Iterator[tuple[int, int]]:
+    """Yield the moves that bring a peg of one set-up onto a peg of another, and none."""
     yield 0, 0
     for (one, column, row), (other, x, y) in product(before, after):
         if one == other:
             yield (column - x if freedom.columns else 0), (row - y if freedom.rows else 0)
 
 
-def nearest(before: Holes, after: Holes, freedom: Freedom) -> tuple[int, int, int]:
-    """The fewest pegs to place for a set-up after another one, and the first move that needs so few."""
+def find_cheapest_move(before: Holes, after: Holes, freedom: Freedom) -> tuple[int, int, int]:
+    """Return the fewest pegs to place for a set-up after another one, and the first move that needs so few."""
     there = Counter(before)
     best = min(
-        (sum((Counter(moved(after, *move)) - there).values()), abs(move[0]) + abs(move[1]), move)
-        for move in set(moves(before, after, freedom))
+        (sum((Counter(move_holes(after, *move)) - there).values()), abs(move[0]) + abs(move[1]), move)
+        for move in set(list_moves(before, after, freedom))
     )
     return best[0], *best[2]
 
 
-def best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
+def find_best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
     """Return the best order of set-ups, from the holes of each; of equal orders the first by numbers.
 
     All are moved so that the lowest column and row that may be moved are 0.
     """
-    cost = np.array([[nearest(one, other, freedom)[0] for other in setups] for one in setups])
-    path = shortest_path(cost) if len(setups) <= MOST_EXACT else greedy_path(cost)
+    cost = np.array([[find_cheapest_move(one, other, freedom)[0] for other in setups] for one in setups])
+    path = find_shortest_path(cost) if len(setups) <= MOST_EXACT else find_greedy_path(cost)
     stood: list[tuple[Step, Holes]] = []
     for number in path:
         holes = setups[number]
-        pegs, columns, rows = nearest(stood[-1][1], holes, freedom) if stood else (len(holes), 0, 0)
-        stood.append((Step(number, columns, rows, pegs), moved(holes, columns, rows)))
+        pegs, columns, rows = (
+            find_cheapest_move(stood[-1][1], holes, freedom) if stood else (len(holes), 0, 0)
+        )
+        stood.append((Step(number, columns, rows, pegs), move_holes(holes, columns, rows)))
     first_column, first_row = (
         min((hole[axis] for _, holes in stood for hole in holes if hole[axis] != NOTHING), default=0)
         if free
@@ -117,7 +129,7 @@ def best_order(setups: Sequence[Holes], freedom: Freedom) -> list[Step]:
     ]
 
 
-def shortest_path(cost: NDArray[np.int64]) -> list[int]:
+def find_shortest_path(cost: NDArray[np.int64]) -> list[int]:
     """Return the first shortest path through all places, from the costs (S, S) of the ways between them."""
     count = len(cost)
     bit, every = 1 << np.arange(count), np.arange(count)
@@ -136,7 +148,7 @@ def shortest_path(cost: NDArray[np.int64]) -> list[int]:
     return path
 
 
-def greedy_path(cost: NDArray[np.int64]) -> list[int]:
+def find_greedy_path(cost: NDArray[np.int64]) -> list[int]:
     """Return a path from the first place to the nearest that is left, and so on."""
     path, left = [0], np.arange(len(cost)) != 0
     while left.any():
@@ -219,19 +231,21 @@ class Plan:
         return sum(setup.moved for setup in self.setups[1:])
 
 
-def plan_of(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
-    losses = table.losses_of(point.patterns)
+def make_plan(point: Point, table: LossTable, members: Sequence[Member]) -> Plan:
+    losses = table.list_losses(point.patterns)
     # Where two patterns suit a member alike, the one with the smaller identity has it.
     suits = np.argmin(np.where(np.isnan(losses), np.inf, losses), axis=0)
     setups = []
     for place, pattern in enumerate(point.patterns):
         held = [members[number] for number in np.flatnonzero(suits == place).tolist()]
         if held:
-            setups.append(SetUp(pattern, together([holding(one, table.words[pattern]) for one in held]), 0))
-    return Plan(point, in_best_order(setups))
+            setups.append(
+                SetUp(pattern, align_holdings([make_holding(one, table.words[pattern]) for one in held]), 0)
+            )
+    return Plan(point, sort_in_best_order(setups))
 
 
-def holding(member: Member, words: NDArray[np.int64]) -> Holding:
+def make_holding(member: Member, words: NDArray[np.int64]) -> Holding:
     place = int(np.flatnonzero((member.words == words).all(axis=1))[0])
     row = member.table.take(slice(place, place + 1))
     return Holding(
@@ -239,12 +253,12 @@ def holding(member: Member, words: NDArray[np.int64]) -> Holding:
     )
 
 
-def together(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
-    """Members of one pattern moved into the same holes, those of the member whose holes suit most others."""
+def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
+    """Return the members of one pattern moved into the same holes, those of the member whose holes suit most others."""
     best: list[Holding] = []
     for target in holdings:
         toolkit = target.member.query.toolkit
-        moved = [moved_onto(one.row, target.row, toolkit) for one in holdings]
+        moved = [move_onto_pattern(one.row, target.row, toolkit) for one in holdings]
         tried = [
             evolve(one, row=one.row if row is None else row, in_place=row is not None)
             for one, row in zip(holdings, moved, strict=True)
@@ -256,14 +270,14 @@ def together(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
     return tuple(best)
 
 
-def in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
-    """Set-ups in the order in which the fewest pegs are moved, each where that asks for it to stand."""
+def sort_in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
+    """Return the set-ups in the order in which the fewest pegs are moved, each where that asks for it to stand."""
     toolkit = setups[0].holdings[0].member.query.toolkit
-    holes = [holes_of(setup.standing.row, toolkit) for setup in setups]
+    holes = [list_holes(setup.standing.row, toolkit) for setup in setups]
     out = []
-    for step in best_order(holes, freedom_of(toolkit)):
+    for step in find_best_order(holes, find_freedom(toolkit)):
         setup = setups[step.setup]
-        rows = (shifted(one.row, toolkit, {0: step.columns}, step.rows) for one in setup.holdings)
+        rows = (shift_fixture(one.row, toolkit, {0: step.columns}, step.rows) for one in setup.holdings)
         holdings = tuple(evolve(one, row=row) for one, row in zip(setup.holdings, rows, strict=True))
         out.append(evolve(setup, holdings=holdings, moved=step.moved))
     return tuple(out)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["REQUIREMENT", "ROUNDING", "best_choice", "load_solver"]
+__all__ = ["REQUIREMENT", "ROUNDING", "find_best_choice", "load_solver"]
 
 REQUIREMENT = "scipy>=1.13"
 # A bound this little below a whole number is that number.
@@ -23,7 +23,7 @@ ROUNDING = 1e-6
 
 
 def load_solver() -> None:
-    """Loads HiGHS.
+    """Load HiGHS.
 
     Raises
     ------
@@ -38,10 +38,11 @@ def load_solver() -> None:
         ) from error
 
 
-def best_choice(
+def find_best_choice(
     costs: NDArray[np.float64], constraint: Any, seconds: float | None
 ) -> tuple[list[int] | None, float | None]:
-    """The numbers of the things to choose so that their costs (N,) are least, and a lower bound of the cost.
+    """Return the numbers of the things to choose so that their costs (N,) are least, and a lower bound of the
+    cost.
 
     The constraint is one of SciPy on whether each of the things is chosen, 0 or 1. After ``seconds``, None
     for no limit, it is the best choice known. Each of the two is None where it is not known.

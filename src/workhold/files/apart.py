@@ -23,7 +23,7 @@ from typing import Any
 
 from workhold.errors import InputError, lacks_memory
 from workhold.files.budget import LIMITS, OverBudgetError
-from workhold.files.fork_server import CAN_FORK, ForkedProcess, forked
+from workhold.files.fork_server import CAN_FORK, ForkedProcess, fork_from_server
 
 __all__ = ["limit_memory", "limit_processor", "run_apart"]
 
@@ -40,11 +40,12 @@ START = (
     "import signal, sys; sys.path[:] = sys.argv[1:]; signal.signal(signal.SIGINT, signal.SIG_DFL); "
     "from workhold.files import apart, fork_server; "
 )
-ANSWER, SERVE = "apart.answer()", "fork_server.serve(apart.loaded, apart.answer)"
+ANSWER, SERVE = "apart.answer()", "fork_server.serve(apart.load_prepared_module, apart.answer)"
 
 
 def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str) -> Any:
-    """Runs ``module.plain(content, **options)`` in a process of its own and returns its plain data.
+    """Run ``module.read_as_plain_data(content, **options)`` in a process of its own and return its plain
+    data.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
     InputError
         What the work raises, or a sentence that the process crashed, took too long or took too much memory.
     """
-    seconds = LIMITS["step"].seconds_for(len(content))
+    seconds = LIMITS["step"].allow_seconds_for(len(content))
     assert seconds is not None
     memory = MEMORY_BYTES + MEMORY_FACTOR * len(content)
     order = {
@@ -68,7 +69,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
         "memory": memory,
         "size": len(content),
     }
-    with started(module) as process:
+    with start_process(module) as process:
         assert process.stdin is not None and process.stdout is not None
         late = Event()
 
@@ -92,25 +93,25 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
             with suppress(BrokenPipeError):
                 process.stdin.close()
     given_up = late.is_set() or code == -getattr(signal, "SIGXCPU", 0)
-    return outcome(answered, code, given_up, (seconds, memory), what)
+    return read_outcome(answered, code, given_up, (seconds, memory), what)
 
 
-def started(module: str) -> ForkedProcess | subprocess.Popen[bytes]:
-    """A process that answers one order for a module's work."""
-    process = forked(module, python_command(SERVE)) if CAN_FORK else None
+def start_process(module: str) -> ForkedProcess | subprocess.Popen[bytes]:
+    """Return a process that answers one order for a module's work."""
+    process = fork_from_server(module, make_python_command(SERVE)) if CAN_FORK else None
     return process or subprocess.Popen(
-        python_command(ANSWER), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        make_python_command(ANSWER), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
     )
 
 
-def python_command(doing: str) -> list[str]:
-    """The command that starts Python with the modules of this process, to do something."""
+def make_python_command(doing: str) -> list[str]:
+    """Return the command that starts Python with the modules of this process, to do something."""
     return [sys.executable, "-P", "-c", START + doing, *sys.path]
 
 
-def outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
-    """What a process that has ended answered, or its refusal as in :func:`run_apart`; limits are seconds and
-    bytes.
+def read_outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int], what: str) -> Any:
+    """Return what a process that has ended answered, or its refusal as in :func:`run_apart`; limits are
+    seconds and bytes.
     """
     kind, value = "", ""
     seconds, memory = limits
@@ -140,7 +141,7 @@ def outcome(answered: bytes, code: int, given_up: bool, limits: tuple[float, int
 
 
 def answer() -> None:
-    """Does the work on standard input and writes its outcome to standard output; the process's main."""
+    """Do the work on standard input and write its outcome to standard output; the process's main."""
     # Libraries write what they like to the usual output, which nobody reads from now on.
     out = os.dup(1)
     os.dup2(2, 1)
@@ -149,7 +150,7 @@ def answer() -> None:
     end_with_starter()
     try:
         limit_memory(order["memory"])
-        reply = ("done", worked(order, content, out))
+        reply = ("done", answer_order(order, content, out))
     except InputError as error:
         reply = ("refused", str(error))
     except Exception as error:
@@ -162,16 +163,16 @@ def answer() -> None:
     os._exit(0)
 
 
-def worked(order: Mapping[str, Any], content: bytes, out: int) -> Any:
-    """The result of an order's work; once it is prepared that is written to ``out``."""
-    module = loaded(order["module"])
+def answer_order(order: Mapping[str, Any], content: bytes, out: int) -> Any:
+    """Return the result of an order's work; once it is prepared that is written to ``out``."""
+    module = load_prepared_module(order["module"])
     os.write(out, PREPARED)
     limit_processor(order["seconds"])
-    return module.plain(content, **order["options"])
+    return module.read_as_plain_data(content, **order["options"])
 
 
-def loaded(name: str) -> ModuleType:
-    """The module of a name, prepared."""
+def load_prepared_module(name: str) -> ModuleType:
+    """Return the module of a name, prepared."""
     module = import_module(name)
     prepare: Callable[[], None] = module.prepare
     prepare()
@@ -179,7 +180,7 @@ def loaded(name: str) -> ModuleType:
 
 
 def end_with_starter() -> None:
-    """Lets the system end this process when its starter has closed the pipe to it."""
+    """Let the system end this process when its starter has closed the pipe to it."""
     if sys.platform == "win32":
         return
     import fcntl
@@ -190,7 +191,7 @@ def end_with_starter() -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Lets the process take no more address space than this, where the system can see to it."""
+    """Let the process take no more address space than this, where the system can see to it."""
     try:
         import resource
     except ImportError:
@@ -202,7 +203,7 @@ def limit_memory(size: int) -> None:
 
 
 def limit_processor(seconds: float) -> None:
-    """Lets the system end the process when it has taken so many processor seconds from now on."""
+    """Let the system end the process when it has taken so many processor seconds from now on."""
     try:
         import resource
     except ImportError:

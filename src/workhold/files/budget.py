@@ -19,7 +19,7 @@ from contextlib import contextmanager
 
 from attrs import frozen
 
-from workhold.errors import InputError, causes_of
+from workhold.errors import InputError, list_causes
 
 __all__ = ["LIMITS", "PART_BYTES", "UNLIMITED", "Budget", "FileLimits", "OverBudgetError"]
 
@@ -35,8 +35,8 @@ class OverBudgetError(InputError):
 
     @staticmethod
     def is_behind(error: BaseException | None) -> bool:
-        """Whether such an error is what another was raised from, with its place."""
-        return any(isinstance(one, OverBudgetError) for one in causes_of(error))
+        """Return whether such an error is what another was raised from, with its place."""
+        return any(isinstance(one, OverBudgetError) for one in list_causes(error))
 
 
 @frozen
@@ -64,7 +64,7 @@ class FileLimits:
     seconds_per_million: float = 0.0
     remedy: str = "save less in it"
 
-    def seconds_for(self, size: int) -> float | None:
+    def allow_seconds_for(self, size: int) -> float | None:
         return None if self.seconds is None else self.seconds + self.seconds_per_million * size / 1e6
 
 
@@ -172,7 +172,7 @@ class Budget:
 
     def __init__(self, limits: FileLimits, size: int = 0) -> None:
         self.limits = limits
-        self.seconds = limits.seconds_for(size)
+        self.seconds = limits.allow_seconds_for(size)
         # Only this thread's time counts: the machine may be busy, and other threads may read other files.
         self.started = time.thread_time()
         self.elements = 0
@@ -181,7 +181,7 @@ class Budget:
         self.depth = 0
 
     def spend(self, elements: int = 1) -> None:
-        """Counts elements that the reader goes through.
+        """Count elements that the reader goes through.
 
         Raises
         ------
@@ -189,11 +189,11 @@ class Budget:
             Where there are more than the limit, or time is up.
         """
         self.elements += elements
-        self.foresee(0)
-        self.work(elements)
+        self.refuse_too_many_ahead(0)
+        self.count_steps(elements)
 
-    def foresee(self, elements: int) -> None:
-        """Refuses elements that the reader is about to go through, where they are more than it may."""
+    def refuse_too_many_ahead(self, elements: int) -> None:
+        """Refuse elements that the reader is about to go through, where they are more than it may."""
         most = self.limits.most_elements
         if most is not None and self.elements + elements > most:
             raise OverBudgetError(
@@ -202,7 +202,7 @@ class Budget:
             )
 
     def count_letters(self, letters: int, label: str) -> None:
-        """Counts letters of a text that is part of a file; refuses more than such a file may have bytes.
+        """Count letters of a text that is part of a file; refuse more than such a file may have bytes.
 
         ``label`` is the text, in words that begin a sentence.
         """
@@ -214,8 +214,8 @@ class Budget:
                 f"{self.limits.remedy}."
             )
 
-    def work(self, steps: int = 1) -> None:
-        """Counts steps of work that are no elements, such as comparisons; only time limits them.
+    def count_steps(self, steps: int = 1) -> None:
+        """Count steps of work that are no elements, such as comparisons; only time limits them.
 
         Raises
         ------
@@ -228,7 +228,7 @@ class Budget:
             self.check_time()
 
     def check_time(self) -> None:
-        """Refuses the file if the reader has worked on it for longer than it may."""
+        """Refuse the file if the reader has worked on it for longer than it may."""
         if self.seconds is not None and time.thread_time() - self.started > self.seconds:
             raise OverBudgetError(
                 f"reading it was given up after {self.seconds:.0f} s, the most for {self.limits.what} of its "
@@ -236,8 +236,8 @@ class Budget:
             )
 
     @contextmanager
-    def nested(self, label: str) -> Iterator[None]:
-        """Counts what is read inside as one level deeper; refuses what is deeper than the limit.
+    def count_nesting(self, label: str) -> Iterator[None]:
+        """Count what is read inside as one level deeper; refuse what is deeper than the limit.
 
         ``label`` is the element, in words that begin a sentence.
         """
@@ -248,11 +248,11 @@ class Budget:
             self.leave()
 
     def enter(self, label: Callable[[], str]) -> None:
-        """Counts what is read from now on as one level deeper, until :meth:`leave`.
+        """Count what is read from now on as one level deeper, until :meth:`leave`.
 
         Parameters
         ----------
-        label : as in :meth:`nested`, made where it is needed.
+        label : as in :meth:`count_nesting`, made where it is needed.
 
         Raises
         ------
@@ -266,5 +266,5 @@ class Budget:
             )
 
     def leave(self) -> None:
-        """Counts what is read from now on as one level less deep."""
+        """Count what is read from now on as one level less deep."""
         self.depth -= 1

@@ -13,7 +13,7 @@ from pydantic import BaseModel, Field, create_model
 
 from workhold.asking.declaring import Declaration, Form
 
-__all__ = ["given_in", "with_fields"]
+__all__ = ["collect_given_values", "add_declared_fields"]
 
 Kind = TypeVar("Kind", bound=BaseModel)
 NUMBERS: Mapping[Form, type] = {
@@ -35,7 +35,7 @@ TYPES: Mapping[Form, Any] = {
 LIMITS = {"above 0": {"gt": 0}, "0": {"ge": 0}, "any": {}}
 
 
-def with_fields(
+def add_declared_fields(
     rows: Iterable[Declaration], largest: float | None = None, *, bounded: bool = True
 ) -> Callable[[type[Kind]], type[Kind]]:
     """Make a decorator that gives a form the declared fields, which its own entries of the same name replace.
@@ -48,7 +48,9 @@ def with_fields(
 
     def made(form: type[Kind]) -> type[Kind]:
         entries: dict[str, Any] = {
-            row.name: entry_of(row, largest, bounded) for row in rows if row.name not in form.model_fields
+            row.name: make_form_field(row, largest, bounded)
+            for row in rows
+            if row.name not in form.model_fields
         }
         return create_model(
             form.__name__, __base__=form, __module__=form.__module__, __doc__=form.__doc__, **entries
@@ -57,13 +59,13 @@ def with_fields(
     return made
 
 
-def entry_of(row: Declaration, largest: float | None, bounded: bool) -> tuple[Any, Any]:
-    """Type and default of a field, with what it means."""
+def make_form_field(row: Declaration, largest: float | None, bounded: bool) -> tuple[Any, Any]:
+    """Return the type and default of a field, with what it means."""
     kind: Any = str
     if row.form == "choice" and bounded:
         kind = Literal[row.choices]
     elif row.form in NUMBERS:
-        bounds: dict[str, Any] = limits_of(row, largest) if bounded else {}
+        bounds: dict[str, Any] = list_field_limits(row, largest) if bounded else {}
         kind = Annotated[NUMBERS[row.form], Field(**bounds)] if bounds else NUMBERS[row.form]
     elif row.form != "choice":
         kind = TYPES[row.form]
@@ -72,13 +74,13 @@ def entry_of(row: Declaration, largest: float | None, bounded: bool) -> tuple[An
     return kind, Field(default=row.default, description=row.help)
 
 
-def limits_of(row: Declaration, largest: float | None) -> dict[str, Any]:
+def list_field_limits(row: Declaration, largest: float | None) -> dict[str, Any]:
     if row.form == "count":
         return {"ge": 1} | ({} if largest is None or row.most is None else {"le": row.most})
     ends = {} if largest is None else {"le": largest} | ({"ge": -largest} if row.least == "any" else {})
     return LIMITS[row.least] | ends
 
 
-def given_in(form: BaseModel, rows: Iterable[Declaration]) -> dict[str, Any]:
-    """Returns the values of declared fields in a form, by name."""
+def collect_given_values(form: BaseModel, rows: Iterable[Declaration]) -> dict[str, Any]:
+    """Return the values of declared fields in a form, by name."""
     return {row.name: getattr(form, row.name) for row in rows}

@@ -25,7 +25,7 @@ from typing import BinaryIO
 
 from attrs import define, frozen
 
-__all__ = ["CAN_FORK", "ForkedProcess", "forked", "serve"]
+__all__ = ["CAN_FORK", "ForkedProcess", "fork_from_server", "serve"]
 
 CAN_FORK = sys.platform == "linux"
 # Seconds after which a server that nobody asks ends.
@@ -53,13 +53,13 @@ class ForkedProcess:
     returncode: int | None = None
 
     def wait(self) -> int:
-        """Waits until it has ended and returns its exit code; that of SIGKILL where nobody can say."""
+        """Wait until it has ended and return its exit code; that of SIGKILL where nobody can say."""
         if self.returncode is None:
             self.returncode = int(self.status.readline() or -signal.SIGKILL)
         return self.returncode
 
     def kill(self) -> None:
-        """Ends it at once, unless it has ended."""
+        """End it at once, unless it has ended."""
         if self.returncode is None:
             with suppress(ProcessLookupError):
                 os.kill(self.number, signal.SIGKILL)
@@ -90,8 +90,8 @@ class ForkServer:
     surroundings: tuple[int, Sequence[str], Mapping[str, str]]
 
     @classmethod
-    def started(cls, command: Sequence[str]) -> ForkServer:
-        """Starts a server by a command whose process calls :func:`serve`."""
+    def start(cls, command: Sequence[str]) -> ForkServer:
+        """Start a server by a command whose process calls :func:`serve`."""
         ours, its = socket.socketpair()
         with its:
             process = subprocess.Popen(
@@ -99,8 +99,8 @@ class ForkServer:
             )
         return cls(process, ours, (os.getpid(), tuple(command), dict(os.environ)))
 
-    def fork(self, module: str) -> ForkedProcess | None:
-        """Has it fork a process for a module's work; None where the server has ended."""
+    def fork_process(self, module: str) -> ForkedProcess | None:
+        """Have it fork a process for a module's work; None where the server has ended."""
         pipes = [os.pipe() for _ in range(3)]
         (order, stdin), (stdout, answer), (status, ended) = pipes
         its = [order, answer, ended]
@@ -121,7 +121,7 @@ class ForkServer:
             return None
 
     def end(self) -> None:
-        """Ends the server, where it is this process's own; what it has forked goes on."""
+        """End the server, where it is this process's own; what it has forked goes on."""
         self.line.close()
         if self.surroundings[0] == os.getpid():
             self.process.kill()
@@ -133,8 +133,9 @@ SERVERS: list[ForkServer] = []
 ASKING = Lock()
 
 
-def forked(module: str, command: Sequence[str]) -> ForkedProcess | None:
-    """A process for a module's work, forked by the server that a command starts, or has started before.
+def fork_from_server(module: str, command: Sequence[str]) -> ForkedProcess | None:
+    """Return a process for a module's work, forked by the server that a command starts, or has started
+    before.
 
     None where even a new server ends before it has forked.
     """
@@ -144,8 +145,8 @@ def forked(module: str, command: Sequence[str]) -> ForkedProcess | None:
             if SERVERS and SERVERS[0].surroundings != surroundings:
                 SERVERS.pop().end()
             if not SERVERS:
-                SERVERS.append(ForkServer.started(command))
-            process = SERVERS[0].fork(module)
+                SERVERS.append(ForkServer.start(command))
+            process = SERVERS[0].fork_process(module)
             if process is not None:
                 return process
             SERVERS.pop().end()
@@ -159,7 +160,7 @@ def end_servers() -> None:
 
 
 def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
-    """Forks a process for each order, until standard input is closed or nothing is asked; the server's main.
+    """Fork a process for each order, until standard input is closed or nothing is asked; the server's main.
 
     ``load`` loads what the work of a module needs. ``work`` is what each process does, with streams of its
     own; it never returns.
@@ -182,7 +183,7 @@ def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
 
 
 def watch(work: Callable[[], None], order: int, answer: int, status: int) -> None:
-    """Forks the process that does the work, and says its number and how it ended; never returns."""
+    """Fork the process that does the work, and say its number and how it ended; never returns."""
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     number = os.fork()
     if number == 0:

@@ -24,7 +24,7 @@ from workhold.geometry.segment import Line, Point, Segment
 from workhold.geometry.triangulation import triangulate
 from workhold.model.bodies import COLOURS, BodyKind, FixtureBody, Slab
 
-__all__ = ["SAGITTA", "Mesh", "bodies_glb", "body_mesh", "surface_mesh"]
+__all__ = ["SAGITTA", "Mesh", "make_bodies_glb", "make_body_mesh", "make_surface_mesh"]
 
 Array = NDArray[np.float64]
 Triangles = NDArray[np.int64]
@@ -58,18 +58,18 @@ class Mesh:
     colours: NDArray[np.float32] | None = None
 
 
-def body_mesh(body: FixtureBody) -> Mesh:
-    parts = [part for slab in body.slabs for part in slab_parts(slab)]
+def make_body_mesh(body: FixtureBody) -> Mesh:
+    parts = [part for slab in body.slabs for part in mesh_slab(slab)]
     points, outward, triangles = zip(*parts, strict=True)
     first = np.cumsum([0, *map(len, points[:-1])])
     numbers = [own + before for own, before in zip(triangles, first, strict=True)]
-    return surface_mesh(np.concatenate(points), np.concatenate(outward), np.concatenate(numbers))
+    return make_surface_mesh(np.concatenate(points), np.concatenate(outward), np.concatenate(numbers))
 
 
-def surface_mesh(
+def make_surface_mesh(
     positions: Array, normals: Array, triangles: Triangles, colours: Array | None = None
 ) -> Mesh:
-    """The mesh of a surface with z up.
+    """Return the mesh of a surface with z up.
 
     Parameters
     ----------
@@ -81,25 +81,30 @@ def surface_mesh(
     if colours is not None:
         dark = colours <= 0.04045
         light = np.where(dark, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4).astype(np.float32)
-    return Mesh(as_gltf(positions / 1000.0), as_gltf(normals), triangles.astype(np.uint32), light)
+    return Mesh(
+        convert_to_gltf_axes(positions / 1000.0),
+        convert_to_gltf_axes(normals),
+        triangles.astype(np.uint32),
+        light,
+    )
 
 
-def as_gltf(vectors: Array) -> NDArray[np.float32]:
-    """Vectors (N, 3) with z up as glTF has them: y up, and what was y to the back."""
+def convert_to_gltf_axes(vectors: Array) -> NDArray[np.float32]:
+    """Return the vectors (N, 3) with z up as glTF has them: y up, and what was y to the back."""
     turned = np.stack([vectors[:, 0], vectors[:, 2], -vectors[:, 1]], axis=1).astype(np.float32)
     return turned + np.float32(0.0)
 
 
-def slab_parts(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
-    """Positions in mm, normals and triangles of the caps and the walls of a slab."""
-    loops = [pieces_of(loop) for loop in (slab.outer, *slab.holes)]
+def mesh_slab(slab: Slab) -> list[tuple[Array, Array, Triangles]]:
+    """Return the positions in mm, normals and triangles of the caps and the walls of a slab."""
+    loops = [split_loop_into_chords(loop) for loop in (slab.outer, *slab.holes)]
     flat = np.array([piece.start for loop in loops for piece in loop])
     caps = np.array(triangulate([[piece.start for piece in loop] for loop in loops]), dtype=np.int64)
     parts: list[tuple[Array, Array, Triangles]] = []
     for height, up, triangles in ((slab.low, -1.0, caps[:, ::-1]), (slab.high, 1.0, caps)):
         points = np.column_stack([flat, np.full(len(flat), height)])
         parts.append((points, np.tile((0.0, 0.0, up), (len(flat), 1)), triangles))
-    parts += [wall(loop, slab.low, slab.high) for loop in loops]
+    parts += [mesh_wall(loop, slab.low, slab.high) for loop in loops]
     return parts
 
 
@@ -112,11 +117,11 @@ class WallPiece:
     normals: tuple[Point, Point]
 
 
-def pieces_of(loop: Sequence[Segment]) -> list[WallPiece]:
-    """A closed loop of pieces over the chords of a loop's segments; those too short are left out."""
+def split_loop_into_chords(loop: Sequence[Segment]) -> list[WallPiece]:
+    """Return a closed loop of pieces over the chords of a loop's segments; those too short are left out."""
     places: list[tuple[Point, int, float]] = []
     for number, segment in enumerate(loop):
-        for parameter in chord_ends(segment)[:-1]:
+        for parameter in list_chord_parameters(segment)[:-1]:
             point = segment.at(parameter)
             if not places or dist(point, places[-1][0]) > SAME:
                 places.append((point, number, parameter))
@@ -127,13 +132,13 @@ def pieces_of(loop: Sequence[Segment]) -> list[WallPiece]:
         end, following, last = places[(k + 1) % len(places)]
         segment = loop[number]
         if following != number:
-            last = chord_ends(segment)[-1]
+            last = list_chord_parameters(segment)[-1]
         out.append(WallPiece(start, end, (segment.normal(first), segment.normal(last))))
     return out
 
 
-def chord_ends(segment: Segment) -> list[float]:
-    """Parameters of the ends of a segment's chords in running order."""
+def list_chord_parameters(segment: Segment) -> list[float]:
+    """Return the parameters of the ends of a segment's chords in running order."""
     if isinstance(segment, Line):
         return [-segment.half_extent, segment.half_extent]
     widest = min(2 * acos(max(0.0, 1.0 - SAGITTA / segment.radius)), LARGEST_TURN)
@@ -142,8 +147,8 @@ def chord_ends(segment: Segment) -> list[float]:
     return [half * (2 * k / count - 1.0) for k in range(count + 1)]
 
 
-def wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array, Array, Triangles]:
-    """Positions in mm, normals and triangles of the wall over a loop: two triangles over each piece."""
+def mesh_wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array, Array, Triangles]:
+    """Return the positions in mm, normals and triangles of the wall over a loop: two triangles over each piece."""
     points = np.array(
         [(*place, z) for piece in loop for place in (piece.start, piece.end) for z in (low, high)]
     )
@@ -153,8 +158,8 @@ def wall(loop: Sequence[WallPiece], low: float, high: float) -> tuple[Array, Arr
     return points, outward, triangles
 
 
-def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:
-    """The GLB file of bodies below one node of a name.
+def make_bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = None) -> bytes:
+    """Return the GLB file of bodies below one node of a name.
 
     Parameters
     ----------
@@ -165,7 +170,7 @@ def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = Non
     nodes: list[dict[str, Any]] = [{"name": name, "children": [k + 1 for k in range(len(bodies))]}]
     meshes = []
     for number, body in enumerate(bodies):
-        mesh = body_mesh(body) if part is None or body.kind is not BodyKind.PART else part
+        mesh = make_body_mesh(body) if part is None or body.kind is not BodyKind.PART else part
         # What has colours of its own has the material after those of the kinds.
         look = kinds.index(body.kind) if mesh.colours is None else len(kinds)
         meshes.append({"name": body.name, "primitives": [scene.add(mesh, look)]})
@@ -180,7 +185,7 @@ def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = Non
         "nodes": nodes,
         "meshes": meshes,
         "materials": [
-            *map(material, kinds),
+            *map(make_material, kinds),
             *([COLOURED] if part is not None and part.colours is not None else []),
         ],
         "accessors": scene.accessors,
@@ -188,19 +193,19 @@ def bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None = Non
         "buffers": [{"byteLength": len(scene.content)}],
     }
     text = json.dumps(document, separators=(",", ":"), allow_nan=False).encode("ascii")
-    chunks = chunk(JSON_CHUNK, text, b" ") + chunk(BINARY_CHUNK, bytes(scene.content), b"\0")
+    chunks = make_chunk(JSON_CHUNK, text, b" ") + make_chunk(BINARY_CHUNK, bytes(scene.content), b"\0")
     return struct.pack("<III", MAGIC, 2, 12 + len(chunks)) + chunks
 
 
-def chunk(kind: int, content: bytes, filling: bytes) -> bytes:
-    """A chunk with its length and kind, filled up to a multiple of four bytes."""
+def make_chunk(kind: int, content: bytes, filling: bytes) -> bytes:
+    """Return a chunk with its length and kind, filled up to a multiple of four bytes."""
     content += filling * (-len(content) % 4)
     return struct.pack("<II", len(content), kind) + content
 
 
-def material(kind: BodyKind) -> dict[str, Any]:
-    """The material of a kind of body; glTF asks for linear light."""
-    factor = [*(linear(value) for value in COLOURS[kind]), 1.0]
+def make_material(kind: BodyKind) -> dict[str, Any]:
+    """Return the material of a kind of body; glTF asks for linear light."""
+    factor = [*(convert_to_linear_light(value) for value in COLOURS[kind]), 1.0]
     return {
         "name": str(kind),
         "pbrMetallicRoughness": {
@@ -218,8 +223,8 @@ COLOURED = {
 }
 
 
-def linear(value: float) -> float:
-    """Light from a value on a screen, both from 0 to 1, to six places (IEC 61966-2-1, sRGB)."""
+def convert_to_linear_light(value: float) -> float:
+    """Return the light from a value on a screen, both from 0 to 1, to six places (IEC 61966-2-1, sRGB)."""
     return round(value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4, 6)
 
 
@@ -232,19 +237,19 @@ class GlbBuffer:
     accessors: list[dict[str, Any]] = field(factory=list)
 
     def add(self, mesh: Mesh, material: int) -> dict[str, Any]:
-        """Adds a mesh, and returns its primitive."""
+        """Add a mesh, and return its primitive."""
         ends = {"min": mesh.positions.min(axis=0).tolist(), "max": mesh.positions.max(axis=0).tolist()}
         attributes = {
-            "POSITION": self.accessor(mesh.positions, VERTICES, **ends),
-            "NORMAL": self.accessor(mesh.normals, VERTICES),
+            "POSITION": self.add_accessor(mesh.positions, VERTICES, **ends),
+            "NORMAL": self.add_accessor(mesh.normals, VERTICES),
         }
         if mesh.colours is not None:
-            attributes["COLOR_0"] = self.accessor(mesh.colours, VERTICES)
-        indices = self.accessor(mesh.triangles.reshape(-1), ELEMENTS)
+            attributes["COLOR_0"] = self.add_accessor(mesh.colours, VERTICES)
+        indices = self.add_accessor(mesh.triangles.reshape(-1), ELEMENTS)
         return {"attributes": attributes, "indices": indices, "material": material}
 
-    def accessor(self, values: NDArray[Any], target: int, **more: list[float]) -> int:
-        """Adds an array, and returns the number of its accessor."""
+    def add_accessor(self, values: NDArray[Any], target: int, **more: list[float]) -> int:
+        """Add an array, and return the number of its accessor."""
         is_vector = values.ndim == 2
         content = values.astype("<f4" if is_vector else "<u4").tobytes()
         self.views.append(

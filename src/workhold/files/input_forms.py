@@ -27,7 +27,7 @@ from pydantic import (
 
 from workhold.errors import InputError
 from workhold.fixels.fields import OPTIONS
-from workhold.fixels.kinds import TABLES, USUAL, kind_of, table_of
+from workhold.fixels.kinds import TABLES, USUAL, find_table, resolve_kind
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import Form, ToolkitField
 
@@ -35,11 +35,11 @@ __all__ = [
     "LONGEST_NAME",
     "TAGS",
     "LoadsFile",
-    "checked_toolkit",
-    "checked_workpiece",
-    "forms_by_noun",
-    "one_of",
-    "optional",
+    "check_toolkit_entries",
+    "check_workpiece_entries",
+    "make_forms_by_noun",
+    "join_forms",
+    "make_optional_entry",
 ]
 
 # Letters of the name of a part or a load: more than any sheet has room for.
@@ -53,7 +53,7 @@ BY_NOUN = {table.noun: table for table in TABLES.values()}
 TAGS = tuple(f"<{noun}>" for noun in BY_NOUN)
 
 
-def forms_by_noun(
+def make_forms_by_noun(
     base: type[BaseModel],
     name: str,
     entry: Callable[[ToolkitField], Any],
@@ -61,7 +61,7 @@ def forms_by_noun(
     summary: str = "{}.",
     hardware: Mapping[str, Any] | None = None,
 ) -> Mapping[str, Any]:
-    """Makes a form for each table, by the table's noun.
+    """Make a form for each table, by the table's noun.
 
     Parameters
     ----------
@@ -89,22 +89,22 @@ def forms_by_noun(
     return forms
 
 
-def optional(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
-    """Type and default of a field of which None means that it is left out, unless it has another default."""
+def make_optional_entry(kind: Any, row: ToolkitField) -> tuple[Any, Any]:
+    """Return the type and default of a field of which None means that it is left out, unless it has another default."""
     if row.is_required:
         return kind, ...
     default = list(row.default) if isinstance(row.default, tuple) else row.default
     return (kind | None if default is None else kind), default
 
 
-def one_of(forms: Mapping[str, Any]) -> Any:
+def join_forms(forms: Mapping[str, Any]) -> Any:
     several = [Annotated[form, Tag(f"<{noun}>")] for noun, form in forms.items()]
-    return Annotated[reduce(or_, several), Discriminator(tag_of)]
+    return Annotated[reduce(or_, several), Discriminator(find_form_tag)]
 
 
-def tag_of(value: Any) -> str:
+def find_form_tag(value: Any) -> str:
     return (
-        f"<{table_of(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
+        f"<{find_table(value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)).noun}>"
     )
 
 
@@ -144,16 +144,16 @@ class ToolkitForm(BaseModel):
     face_tolerance: FiniteFloat | None = None
 
 
-def entry_of(row: ToolkitField) -> tuple[Any, Any]:
-    """Type and default of a field in a file, in which what is left out keeps its default."""
+def make_toolkit_entry(row: ToolkitField) -> tuple[Any, Any]:
+    """Return the type and default of a field in a file, in which what is left out keeps its default."""
     return (TYPES[row.form], ...) if row.is_required else (TYPES[row.form] | None, None)
 
 
 # By the noun of their tables.
-FORMS = forms_by_noun(
+FORMS = make_forms_by_noun(
     ToolkitForm,
     "{}Form",
-    entry_of,
+    make_toolkit_entry,
     summary="{}, as its file describes it.",
     hardware={
         name: (kind, Field(default=None, alias=name.replace("_", "-")))
@@ -172,19 +172,19 @@ WANTED = {
 } | {row.name: row.entry for row in OPTIONS if row.entry}
 
 
-def checked_toolkit(content: Mapping[str, Any]) -> dict[str, Any]:
-    """The entries of a toolkit's file that are given, each of the type it should have."""
+def check_toolkit_entries(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the entries of a toolkit's file that are given, each of the type it should have."""
     kind = content.get("kind", USUAL)
-    noun = table_of(kind_of(kind)[0] if isinstance(kind, str) else None).noun
+    noun = find_table(resolve_kind(kind)[0] if isinstance(kind, str) else None).noun
     try:
         given: dict[str, Any] = FORMS[noun].model_validate(content).model_dump(exclude_none=True)
     except ValidationError as error:
-        raise InputError(toolkit_fault(error, FORMS[noun], noun)) from error
+        raise InputError(describe_toolkit_fault(error, FORMS[noun], noun)) from error
     return given
 
 
-def toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) -> str:
-    """The first thing wrong with the shape, as one sentence."""
+def describe_toolkit_fault(error: ValidationError, form: type[ToolkitForm], noun: str) -> str:
+    """Return the first thing wrong with the shape, as one sentence."""
     first = error.errors(include_url=False, include_context=False)[0]
     name, kind = str(first["loc"][0]), first["type"]
     if kind == "extra_forbidden":
@@ -220,16 +220,16 @@ class WorkpieceFile(BaseModel):
     loops: list[list[Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]]] = Field(min_length=1)
 
 
-def checked_workpiece(content: dict[str, Any]) -> dict[str, Any]:
+def check_workpiece_entries(content: dict[str, Any]) -> dict[str, Any]:
     """Name (None when there is none), units and loops of a workpiece, each of the type it should have."""
     try:
         return WorkpieceFile.model_validate(content).model_dump()
     except ValidationError as error:
-        raise InputError(workpiece_fault(error)) from error
+        raise InputError(describe_workpiece_fault(error)) from error
 
 
-def workpiece_fault(error: ValidationError) -> str:
-    """The first thing wrong with the shape, as one sentence."""
+def describe_workpiece_fault(error: ValidationError) -> str:
+    """Return the first thing wrong with the shape, as one sentence."""
     first = error.errors(include_url=False, include_context=False)[0]
     place, kind = list(first["loc"]), first["type"]
     if place == ["units"]:

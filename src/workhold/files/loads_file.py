@@ -30,9 +30,9 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
-from workhold.files.text import json_value, read_text, toml_table
+from workhold.files.text import parse_json, parse_toml, read_text
 from workhold.model.requirements import ANY_DIRECTION, Load
-from workhold.units import unit_named
+from workhold.units import find_unit
 
 __all__ = ["load_from_words", "read_loads"]
 
@@ -52,7 +52,7 @@ QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-
 
 
 def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
-    """Reads a loads file.
+    """Read a loads file.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
         When the file cannot be read or holds no loads, naming the first load that cannot be used.
     """
     path = Path(path)
-    content = parsed(path)
+    content = parse_loads_file(path)
     for key in content:
         if key not in ("unit", "load"):
             raise InputError(
@@ -73,7 +73,7 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
             )
     if "unit" in content:
         try:
-            unit_scale = unit_named(str(content["unit"])).millimetres
+            unit_scale = find_unit(str(content["unit"])).millimetres
         except InputError as error:
             raise InputError(f"{path}: {error}") from None
     tables = content.get("load")
@@ -84,11 +84,11 @@ def read_loads(path: str | Path, unit_scale: float = 1.0) -> tuple[Load, ...]:
     return tuple(load_from_words(table, f"{path}: load {n}", unit_scale) for n, table in enumerate(tables, 1))
 
 
-def parsed(path: Path) -> dict[str, Any]:
-    """The content of a TOML or JSON file; refuses one that cannot be read."""
+def parse_loads_file(path: Path) -> dict[str, Any]:
+    """Return the content of a TOML or JSON file; refuse one that cannot be read."""
     try:
         text = read_text(path, LIMITS["loads"])
-        content = json_value(text) if path.suffix.lower() == ".json" else toml_table(text)
+        content = parse_json(text) if path.suffix.lower() == ".json" else parse_toml(text)
     except InputError as error:
         raise InputError(f"{path} is not a loads file: {error}") from error
     if not isinstance(content, dict):
@@ -97,7 +97,7 @@ def parsed(path: Path) -> dict[str, Any]:
 
 
 def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> Load:
-    """A load from its description.
+    """Return a load from its description.
 
     Parameters
     ----------
@@ -132,26 +132,30 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
     if "z" in words:
         height = number(words["z"])
         if height is None:
-            raise InputError(f"{place}: z {shown(words['z'])} is not a height: give a number, such as 12.")
-    vector = components(words, place)
+            raise InputError(
+                f"{place}: z {quote_value(words['z'])} is not a height: give a number, such as 12."
+            )
+    vector = read_force_components(words, place)
     if "at" in words:
-        points = [point(words["at"], f"{place}: at")]
+        points = [read_point(words["at"], f"{place}: at")]
     elif "path" in words:
-        points = path_points(words["path"], f"{place}: path")
+        points = read_path_points(words["path"], f"{place}: path")
     try:
         return Load(
             points=[(x * unit_scale, y * unit_scale) for x, y in points],
             force=hypot(vector[0], vector[1])
             if vector
-            else quantity(words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"),
+            else read_quantity(
+                words.get("force", 0), f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf"
+            ),
             directions=degrees(atan2(vector[1], vector[0]))
             if vector
-            else directions(words["direction"], f"{place}: direction")
+            else read_direction_range(words["direction"], f"{place}: direction")
             if "direction" in words
             else ANY_DIRECTION,
             upward=vector[2] if vector else 0.0,
             height=None if height is None else height * unit_scale,
-            moment=quantity(
+            moment=read_quantity(
                 words.get("moment", 0), f"{place}: moment", MOMENT_UNITS, "5000, 5000N.mm, 5N.m or 40lbf.in"
             ),
             name=str(words.get("name", "")),
@@ -160,9 +164,9 @@ def load_from_words(words: Mapping[str, Any], place: str, unit_scale: float) -> 
         raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from None
 
 
-def components(words: Mapping[str, Any], place: str) -> tuple[float, float, float] | None:
-    """A force along x, y and z in N; None of one that is its size alone. Refuses other lists, and a direction
-    beside one.
+def read_force_components(words: Mapping[str, Any], place: str) -> tuple[float, float, float] | None:
+    """Return a force along x, y and z in N; None of one that is its size alone. Refuses other lists, and a
+    direction beside one.
     """
     given = words.get("force")
     parts = given.split(",") if isinstance(given, str) and "," in given else given
@@ -170,64 +174,66 @@ def components(words: Mapping[str, Any], place: str) -> tuple[float, float, floa
         return None
     if len(parts) != 3:
         raise InputError(
-            f"{place}: force {shown(given)} is not a force along x, y and z: give three numbers, such as "
+            f"{place}: force {quote_value(given)} is not a force along x, y and z: give three numbers, such as "
             "[300, -200, 80], or its size."
         )
     if "direction" in words:
         raise InputError(
             f"{place} has a force along x, y and z, and a direction: give the size alone with that."
         )
-    x, y, z = (quantity(one, f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf") for one in parts)
+    x, y, z = (
+        read_quantity(one, f"{place}: force", FORCE_UNITS, "200, 200N, 0.2kN or 45lbf") for one in parts
+    )
     return x, y, z
 
 
 def is_number(value: Any) -> bool:
-    """Whether a value is a finite number, and no truth value."""
+    """Return whether a value is a finite number, and no truth value."""
     return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
 
 
-def quantity(value: Any, place: str, units: Mapping[str, float], such_as: str) -> float:
-    """A number with or without a unit, in N or N mm; refuses anything else."""
+def read_quantity(value: Any, place: str, units: Mapping[str, float], such_as: str) -> float:
+    """Return a number with or without a unit, in N or N mm; refuse anything else."""
     if is_number(value):
         return float(value)
     found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
     unit = found[2].lower().replace("·", ".").replace("*", ".") if found else ""
     if found is None or unit not in units:
-        raise InputError(f"{place} {shown(value)} cannot be used: give a number, such as {such_as}.")
+        raise InputError(f"{place} {quote_value(value)} cannot be used: give a number, such as {such_as}.")
     return float(found[1]) * units[unit]
 
 
 def number(value: Any) -> float | None:
-    """A plain finite number, from a number or from text; None for anything else."""
+    """Return a plain finite number, from a number or from text; None for anything else."""
     if isinstance(value, str):
         found = QUANTITY.fullmatch(value)
         value = float(found[1]) if found and not found[2] else None
     return float(value) if is_number(value) else None
 
 
-def point(value: Any, place: str) -> tuple[float, float]:
-    """A point from ``X,Y`` or [x, y]; refuses anything else."""
+def read_point(value: Any, place: str) -> tuple[float, float]:
+    """Return a point from ``X,Y`` or [x, y]; refuse anything else."""
     parts = value.split(",") if isinstance(value, str) else value
     if isinstance(parts, list | tuple) and len(parts) == 2:
         x, y = number(parts[0]), number(parts[1])
         if x is not None and y is not None:
             return x, y
-    raise InputError(f"{place} {shown(value)} is not a point: give two numbers, such as 10,5.")
+    raise InputError(f"{place} {quote_value(value)} is not a point: give two numbers, such as 10,5.")
 
 
-def path_points(value: Any, place: str) -> list[tuple[float, float]]:
-    """The corners of a path from ``X,Y;X,Y`` or a list of points; refuses anything else."""
+def read_path_points(value: Any, place: str) -> list[tuple[float, float]]:
+    """Return the corners of a path from ``X,Y;X,Y`` or a list of points; refuse anything else."""
     parts = value.split(";") if isinstance(value, str) else value
     if not isinstance(parts, list | tuple) or len(parts) < 2:
         raise InputError(
-            f"{place} {shown(value)} is not a path: give two points or more, such as 0,0;40,0;40,20."
+            f"{place} {quote_value(value)} is not a path: give two points or more, such as 0,0;40,0;40,20."
         )
-    return [point(part, place) for part in parts]
+    return [read_point(part, place) for part in parts]
 
 
-def directions(value: Any, place: str) -> tuple[float, float]:
-    """A range of directions in degrees from an angle, ``LOW..HIGH``, [low, high] or ``any``; refuses anything
-    else.
+def read_direction_range(value: Any, place: str) -> tuple[float, float]:
+    """Return a range of directions in degrees from an angle, ``LOW..HIGH``, [low, high] or ``any``; refuse
+    anything else.
     """
     if isinstance(value, str) and value.strip().lower() == "any":
         return ANY_DIRECTION
@@ -238,12 +244,12 @@ def directions(value: Any, place: str) -> tuple[float, float]:
     low, high = angles[0] if angles else None, angles[-1] if angles else None
     if len(angles) > 2 or low is None or high is None:
         raise InputError(
-            f"{place} {shown(value)} cannot be used: give an angle in degrees such as 30, a range such as "
+            f"{place} {quote_value(value)} cannot be used: give an angle in degrees such as 30, a range such as "
             "30..60, or any."
         )
     return low, high
 
 
-def shown(value: Any) -> str:
+def quote_value(value: Any) -> str:
     text = f"'{value}'" if isinstance(value, str) else str(value)
     return text if len(text) <= 60 else text[:57] + "..."

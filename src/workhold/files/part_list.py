@@ -17,11 +17,11 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.errors import InputError, encodable, lacks_memory
-from workhold.files.part.finding import found
+from workhold.errors import InputError, lacks_memory, make_encodable
+from workhold.files.part.finding import find_part_file
 from workhold.files.part.load import Loaded, read_workpiece
 
-__all__ = ["ListedPart", "ReadPart", "part_list", "read_listed"]
+__all__ = ["ListedPart", "ReadPart", "list_parts", "read_listed"]
 
 ENDINGS = (".dxf", ".svg", ".json", ".step", ".stp")
 # How a file of results, or of jobs that are done, begins; a part's never does.
@@ -61,8 +61,8 @@ class ReadPart:
     refusal: str = ""
 
 
-def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()) -> tuple[ListedPart, ...]:
-    """The parts that files, folders and built-in names stand for, each file once, in the order given.
+def list_parts(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()) -> tuple[ListedPart, ...]:
+    """Return the parts that files, folders and built-in names stand for, each file once, in the order given.
 
     Of a folder these are all drawings in it and below it, whether or not they can be read. Numbers in names
     sort as numbers: ``plate2.dxf`` comes before ``plate10.dxf``. Hidden files and
@@ -80,7 +80,7 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
 
     Examples
     --------
-    >>> [part.name for part in part_list(["widget", "Flange", "widget"])]
+    >>> [part.name for part in list_parts(["widget", "Flange", "widget"])]
     ['widget', 'Flange']
     """
     apart = {os.path.realpath(folder) for folder in leave_out}
@@ -88,7 +88,7 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
     for one in given:
         path = Path(one)
         if is_folder(path):
-            drawings = list(drawings_in(path, apart))
+            drawings = list(list_drawings_in_folder(path, apart))
             if not drawings:
                 raise InputError(
                     f"{path} has no drawing in it: give a folder with {', '.join(ENDINGS[:-1])} or "
@@ -96,7 +96,7 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
                 )
             entries = [(drawing.relative_to(path).as_posix(), drawing, drawing) for drawing in drawings]
         else:
-            entries = [(str(one), Path(one), found(one))]
+            entries = [(str(one), Path(one), find_part_file(one))]
         for entry in entries:
             # The ending is what a file is read by: under another one a link is another part.
             parts.setdefault((os.path.realpath(entry[2]), entry[2].suffix.lower()), entry)
@@ -106,21 +106,21 @@ def part_list(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ())
             )
     times = Counter(name for name, _, _ in parts.values())
     return tuple(
-        ListedPart(encodable(name if times[name] == 1 else str(typed)), file)
+        ListedPart(make_encodable(name if times[name] == 1 else str(typed)), file)
         for name, typed, file in parts.values()
     )
 
 
 def is_folder(path: Path) -> bool:
-    """Whether a path is a folder; names that no file can have are none."""
+    """Return whether a path is a folder; names that no file can have are none."""
     try:
         return path.is_dir()
     except OSError:
         return False
 
 
-def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
-    """The drawings in a folder: its own first, then those of each folder in it.
+def list_drawings_in_folder(folder: Path, apart: set[str]) -> Iterator[Path]:
+    """Yield the drawings in a folder: its own first, then those of each folder in it.
 
     Links that lead nowhere, pipes and inner folders that cannot be looked into stand among them: reading them
     says what they are. Refuses a folder that cannot itself be looked into.
@@ -130,7 +130,7 @@ def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
     while waiting:
         inside, place = waiting.pop()
         try:
-            entries = sorted(os.scandir(inside), key=lambda entry: natural(entry.name))
+            entries = sorted(os.scandir(inside), key=lambda entry: make_natural_sort_key(entry.name))
         except OSError as error:
             if inside != folder:
                 yield inside
@@ -146,8 +146,8 @@ def drawings_in(folder: Path, apart: set[str]) -> Iterator[Path]:
         waiting += [one for one in places if str(one[1]) not in apart]
 
 
-def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
-    """A key by which names stand as people count: figures as numbers, capitals like small letters."""
+def make_natural_sort_key(name: str) -> tuple[list[tuple[bool, int, str]], str]:
+    """Return a key by which names stand as people count: figures as numbers, capitals like small letters."""
     pieces = re.findall(r"[0-9]{1,18}|[^0-9]+", name)
     return [
         (piece[0] > "9", int(piece) if "0" <= piece[0] <= "9" else 0, piece.lower()) for piece in pieces
@@ -155,7 +155,7 @@ def natural(name: str) -> tuple[list[tuple[bool, int, str]], str]:
 
 
 def is_own(path: Path) -> bool:
-    """Whether a file is JSON that workhold wrote and no part; False where it cannot be opened."""
+    """Return whether a file is JSON that workhold wrote and no part; False where it cannot be opened."""
     if path.suffix.lower() != ".json" or not path.is_file():
         return False
     try:
@@ -166,7 +166,7 @@ def is_own(path: Path) -> bool:
 
 
 def read_listed(part: ListedPart, **options: Any) -> ReadPart:
-    """Reads a part of a list; whatever is wrong with its file is a sentence, so that the others go on.
+    """Read a part of a list; whatever is wrong with its file is a sentence, so that the others go on.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def read_listed(part: ListedPart, **options: Any) -> ReadPart:
 
     Examples
     --------
-    >>> read = read_listed(part_list(["widget"])[0])
+    >>> read = read_listed(list_parts(["widget"])[0])
     >>> read.loaded.workpiece.name, read.refusal
     ('widget', '')
     """

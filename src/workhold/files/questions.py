@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping, Sequence
 
-from workhold.errors import InputError, quoted
+from workhold.errors import InputError, quote_value
 
 __all__ = [
     "AXIS",
@@ -28,13 +28,13 @@ __all__ = [
     "START",
     "UNIT",
     "UnitAskedError",
-    "by_height",
-    "layers_given",
+    "is_read_by_height",
+    "check_layer_names",
     "number_or_name",
     "refuse_axis",
     "refuse_fit",
     "refuse_layers",
-    "worded",
+    "name_questions",
 ]
 
 # The unit of a drawing that does not say its own, and the one that counts whatever it says.
@@ -62,14 +62,14 @@ class UnitAskedError(InputError):
     """A drawing whose unit is not known: whoever can ask for it may read the drawing again."""
 
 
-def worded(sentence: str, called: Mapping[str, str] | None) -> str:
-    """A sentence with the names of questions in place of their marks; Python's where none are given.
+def name_questions(sentence: str, called: Mapping[str, str] | None) -> str:
+    """Return a sentence with the names of questions in place of their marks; Python's where none are given.
 
     Examples
     --------
-    >>> worded(f"choose another with {PART_NUMBER}.", {"part_number": "--part"})
+    >>> name_questions(f"choose another with {PART_NUMBER}.", {"part_number": "--part"})
     'choose another with --part.'
-    >>> worded(f"leave {DRAWING_UNIT} out.", None)
+    >>> name_questions(f"leave {DRAWING_UNIT} out.", None)
     'leave unit out.'
     """
     names = IN_PYTHON | dict(called or {})
@@ -81,7 +81,7 @@ def worded(sentence: str, called: Mapping[str, str] | None) -> str:
 
 
 def number_or_name(part: int | str | None) -> int | str | None:
-    """A part's number where it is written in figures, else its name as it was given.
+    """Return a part's number where it is written in figures, else its name as it was given.
 
     Examples
     --------
@@ -92,35 +92,35 @@ def number_or_name(part: int | str | None) -> int | str | None:
     return int(text) if text.isascii() and text.isdigit() and len(text) < 10 else part
 
 
-def layers_given(layers: Sequence[str] | str | None) -> Sequence[str] | None:
-    """Names of layers, of which one may stand by itself; refuses what are none."""
+def check_layer_names(layers: Sequence[str] | str | None) -> Sequence[str] | None:
+    """Return the names of layers, of which one may stand by itself; refuse what are none."""
     names = [layers] if isinstance(layers, str) else layers
     if names is not None and not (isinstance(names, Iterable) and all(isinstance(one, str) for one in names)):
-        raise InputError(f"layers cannot be {quoted(layers)}: give their names in a list.")
+        raise InputError(f"layers cannot be {quote_value(layers)}: give their names in a list.")
     return names if names is None else list(names)
 
 
 def refuse_layers(layers: Sequence[str] | None) -> None:
-    """Refuses a choice of layers for a file that has none."""
+    """Refuse a choice of layers for a file that has none."""
     if layers is not None:
         raise InputError(f"layers can be chosen in DXF files only: leave {LAYERS} out.")
 
 
 def refuse_fit(fit: float | None) -> None:
-    """Refuses a fit for a built-in part, and for the outline of a solid in a result file."""
+    """Refuse a fit for a built-in part, and for the outline of a solid in a result file."""
     if fit is not None:
         raise InputError(f"its outline has no chords for arcs: leave {FIT} out.")
 
 
 def refuse_axis(options: Mapping[str, object]) -> None:
-    """Refuses an axis, a section or a height of a solid for a file that holds a flat drawing."""
+    """Refuse an axis, a section or a height of a solid for a file that holds a flat drawing."""
     for question in OF_SOLIDS:
         if options.get(question[1:-1]) is not None:
             raise InputError(f"only a STEP file can be looked at along an axis: leave {question} out.")
 
 
-def by_height(options: Mapping[str, object], fit: float | None) -> bool:
-    """Whether a solid is to be looked at by the height of the pegs; refuses a section or a fit besides."""
+def is_read_by_height(options: Mapping[str, object], fit: float | None) -> bool:
+    """Return whether a solid is to be looked at by the height of the pegs; refuse a section or a fit besides."""
     usual: tuple[object, ...] = (None, {})
     asked = [
         mark for mark in (PEG_HEIGHT, HEAD_ROOM, LEAST_BAND, HEIGHTS) if options.get(mark[1:-1]) not in usual

@@ -54,7 +54,7 @@ def refuse_output(
     force: bool = False,
     called: str = IN_PYTHON,
 ) -> None:
-    """Refuses an output file before any work is done for it.
+    """Refuse an output file before any work is done for it.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def refuse_output_folder(
     force: bool,
     called: str = IN_PYTHON,
 ) -> None:
-    """Refuses an output folder, or the files of some names that would be written into it.
+    """Refuse an output folder, or the files of some names that would be written into it.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def refuse_output_folder(
 
 
 def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: bool, called: str) -> None:
-    """Refuses to write over an input, and over a foreign file unless that is asked for."""
+    """Refuse to write over an input, and over a foreign file unless that is asked for."""
     if not path.is_file():
         return
     if any(is_same(path, given) for given in inputs if given is not None):
@@ -106,7 +106,7 @@ def refuse_replacing(path: Path, inputs: Iterable[str | Path | None], force: boo
 
 
 def refuse_other_ending(path: str | Path, own: Sequence[str], what: str) -> None:
-    """Refuses an output whose name says that it is a file of another kind.
+    """Refuse an output whose name says that it is a file of another kind.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def is_same(path: Path, given: str | Path) -> bool:
 
 
 def is_own(path: Path) -> bool:
-    """Whether workhold has written a file, or the file is empty."""
+    """Return whether workhold has written a file, or the file is empty."""
     with suppress(OSError), path.open("rb") as stream:
         first = stream.read(ENDS)
         stream.seek(-min(ENDS, os.fstat(stream.fileno()).st_size), os.SEEK_END)

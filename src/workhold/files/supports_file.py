@@ -10,12 +10,17 @@ import numpy as np
 from attrs import asdict
 
 from workhold.errors import InputError
-from workhold.files.atomic import text_file
+from workhold.files.atomic import write_text_file
 from workhold.files.replacing import refuse_other_ending, refuse_output
-from workhold.files.result.fixture_text import fixture_lines
-from workhold.files.result.parts import checked_head
-from workhold.files.result.reader import checked_table, collected, measured
-from workhold.files.result.writer import outlines_entry, solid_entry, toolkit_entry, workpiece_entry
+from workhold.files.result.fixture_text import write_fixture_lines
+from workhold.files.result.parts import check_head
+from workhold.files.result.reader import add_missing_figures, check_table, collect_columns
+from workhold.files.result.writer import (
+    make_own_outlines_entry,
+    make_solid_entry,
+    make_toolkit_entry,
+    make_workpiece_entry,
+)
 from workhold.files.supports_forms import (
     FORMAT,
     ReadFigures,
@@ -30,18 +35,18 @@ from workhold.model.result import Result
 from workhold.model.support_request import Loops, SupportRequest, compute_usual_head
 from workhold.model.support_triples import ClampFigures, SupportPad, Supports, Triple
 
-__all__ = ["query_of", "read_supports", "supports_entry", "write_supports"]
+__all__ = ["make_query", "read_supports", "make_supports_entry", "write_supports"]
 
 
-def query_of(part: SupportsPart, path: Path) -> Query:
+def make_query(part: SupportsPart, path: Path) -> Query:
     try:
-        return checked_head(part.head(), path).query()
+        return check_head(part.to_head(), path).to_query()
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(str(path)) else f"{path}: {error}") from error
 
 
 def read_supports(path: str | Path) -> Supports:
-    """Reads a file of supports.
+    """Read a file of supports.
 
     Raises
     ------
@@ -56,12 +61,12 @@ def read_supports(path: str | Path) -> Supports:
     """
     path = Path(path)
     part = read_supports_part(path)
-    query = query_of(part, path)
-    table = measured(checked_table(collected([part.fixture], path), query, path), query)
-    counts = query.toolkit.arrangements_counted(table.arrangement)
+    query = make_query(part, path)
+    table = add_missing_figures(check_table(collect_columns([part.fixture], path), query, path), query)
+    counts = query.toolkit.count_arrangements(table.arrangement)
     fixture = Result(query, table, found=counts, distinct=counts)[0]
     try:
-        request = part.request()
+        request = part.to_request()
         loads = tuple(load.load(request.thickness) for load in part.loads)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
@@ -73,8 +78,8 @@ def read_supports(path: str | Path) -> Supports:
         one = part.triples.pop()
         for hole in one.holes:
             if hole not in pads:
-                pads[hole] = pad_of(hole, fixture, query, path)
-        triples.append(triple_of(one, tuple(pads[hole] for hole in one.holes), request.point))
+                pads[hole] = make_support_pad(hole, fixture, query, path)
+        triples.append(make_triple(one, tuple(pads[hole] for hole in one.holes), request.point))
     return Supports(
         query,
         fixture,
@@ -87,8 +92,8 @@ def read_supports(path: str | Path) -> Supports:
     )
 
 
-def pad_of(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Path) -> SupportPad:
-    """The support in a hole of a file; refuses one that is on no plate of the toolkit."""
+def make_support_pad(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Path) -> SupportPad:
+    """Return the support in a hole of a file; refuse one that is on no plate of the toolkit."""
     name, column, row = hole
     plates = {plate.name: plate for plate in query.toolkit.plates}
     if name not in plates:
@@ -97,10 +102,10 @@ def pad_of(hole: tuple[str, int, int], fixture: Fixture, query: Query, path: Pat
     return SupportPad(name, column, row, float(x), float(y))
 
 
-def triple_of(
+def make_triple(
     part: ReadTriple, supports: tuple[SupportPad, ...], point: tuple[float, float] | None
 ) -> Triple:
-    """A triple of a file with its supports; the clamp of its own stands at the point asked for."""
+    """Return a triple of a file with its supports; the clamp of its own stands at the point asked for."""
     return Triple(
         supports=supports,
         travel=part.jaw_separation,
@@ -121,7 +126,7 @@ def clamp_of(part: ReadFigures, point: tuple[float, float] | None) -> ClampFigur
 
 
 def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = False) -> None:
-    """Writes a file of supports, a line for each triple.
+    """Write a file of supports, a line for each triple.
 
     Parameters
     ----------
@@ -134,39 +139,39 @@ def write_supports(supports: Supports, path: str | Path, *, overwrite: bool = Fa
     """
     refuse_other_ending(path, [".json"], "a file of supports")
     refuse_output(path, force=overwrite)
-    entry = supports_entry(supports)
+    entry = make_supports_entry(supports)
     triples = entry.pop("triples")
     lines = [f"{json.dumps(key)}: {json.dumps(value)},\n" for key, value in entry.items()]
-    with text_file(path) as stream:
+    with write_text_file(path) as stream:
         stream.write("{" + "".join(lines) + '"triples": [')
         stream.write(",".join(f"\n{json.dumps(triple)}" for triple in triples) + "\n]}\n")
 
 
-def supports_entry(supports: Supports) -> dict[str, Any]:
-    """Supports as they are written; refuses a fixture that is not one of a result."""
+def make_supports_entry(supports: Supports) -> dict[str, Any]:
+    """Return the supports as they are written; refuse a fixture that is not one of a result."""
     query, request = supports.query, supports.request
     band = (0.0, request.thickness) if request.band is None else request.band
     return {
         "format": FORMAT,
-        **solid_entry(query.workpiece.solid),
-        "workpiece": workpiece_entry(query.workpiece),
-        **outlines_entry(query.workpiece),
-        **toolkit_entry(query.toolkit),
-        "fixture": fixture_entry(supports),
+        **make_solid_entry(query.workpiece.solid),
+        "workpiece": make_workpiece_entry(query.workpiece),
+        **make_own_outlines_entry(query.workpiece),
+        **make_toolkit_entry(query.toolkit),
+        "fixture": make_fixture_entry(supports),
         "heights": {"thickness": request.thickness, "band": list(band)},
         "supports": {
             "pad_radius": request.pad_radius,
             "pad_margin": request.pad_margin,
-            "bottom": loops_entry(request.bottom),
-            "zones": [zone_entry(zone) for zone in request.bottom_zones],
+            "bottom": make_loops_entry(request.bottom),
+            "zones": [make_zone_entry(zone) for zone in request.bottom_zones],
         },
         "clamp": {
             "tip_radius": request.tip_radius,
             "inside": request.inside,
-            **beside_tip(request),
-            "top": loops_entry(request.top),
+            **make_tip_surroundings_entry(request),
+            "top": make_loops_entry(request.top),
             **({} if request.top_heights is None else {"top_heights": list(request.top_heights)}),
-            "zones": [zone_entry(zone) for zone in request.top_zones],
+            "zones": [make_zone_entry(zone) for zone in request.top_zones],
             "reach": None if request.reach is None else [list(ring) for ring in request.reach],
             "point": None if request.point is None else list(request.point),
         },
@@ -174,12 +179,12 @@ def supports_entry(supports: Supports) -> dict[str, Any]:
         "jaw_force": supports.jaw_force,
         "complete": supports.complete,
         "counts": {"positions": supports.positions, "triples": supports.count},
-        "triples": [triple_entry(triple) for triple in supports.triples],
+        "triples": [make_triple_entry(triple) for triple in supports.triples],
     }
 
 
-def beside_tip(request: SupportRequest) -> dict[str, Any]:
-    """What is asked around the tip, where that is not as usual, and what of the part is beside its faces."""
+def make_tip_surroundings_entry(request: SupportRequest) -> dict[str, Any]:
+    """Return what is asked around the tip, where that is not as usual, and what of the part is beside its faces."""
     entry: dict[str, Any] = {}
     if request.tip_margin != 0.0:
         entry["tip_margin"] = request.tip_margin
@@ -187,15 +192,18 @@ def beside_tip(request: SupportRequest) -> dict[str, Any]:
         entry["head_radius"] = request.head_radius
     for name in ("rising", "hanging"):
         if loops := getattr(request, name):
-            entry |= {name: loops_entry(loops), f"{name}_heights": list(getattr(request, f"{name}_heights"))}
+            entry |= {
+                name: make_loops_entry(loops),
+                f"{name}_heights": list(getattr(request, f"{name}_heights")),
+            }
     return entry
 
 
-def fixture_entry(supports: Supports) -> dict[str, Any]:
-    """The planar fixture as a result file has it, with the bands of its pegs."""
+def make_fixture_entry(supports: Supports) -> dict[str, Any]:
+    """Return the planar fixture as a result file has it, with the bands of its pegs."""
     listing = supports.fixture.listing
     table = listing.result.table.take(slice(listing.row, listing.row + 1))
-    ((line,),) = fixture_lines(table, supports.query.toolkit, supports.query.workpiece)
+    ((line,),) = write_fixture_lines(table, supports.query.toolkit, supports.query.workpiece)
     entry: dict[str, Any] = json.loads(line)
     bands = supports.request.bands
     if bands is not None:
@@ -211,13 +219,15 @@ def fixture_entry(supports: Supports) -> dict[str, Any]:
     return entry
 
 
-def loops_entry(loops: Loops | None) -> Any:
-    """Loops of a face, or None; of no face one loop around nothing, as no list could be read as all of it."""
+def make_loops_entry(loops: Loops | None) -> Any:
+    """Return the loops of a face, or None; of no face one loop around nothing, as no list could be read as
+    all of it.
+    """
     return None if loops is None else [(loop + 0.0).tolist() for loop in loops] or [[]]
 
 
-def zone_entry(zone: Zone) -> dict[str, Any]:
-    """A zone as a circle where it is one, as a polygon where its sides are straight, else as a loop."""
+def make_zone_entry(zone: Zone) -> dict[str, Any]:
+    """Return a zone as a circle where it is one, as a polygon where its sides are straight, else as a loop."""
     loop = np.asarray(zone.loop)
     if len(loop) == 2 and (loop[:, 2] == 1.0).all():
         (x0, y0), (x1, y1) = loop[:, :2].tolist()
@@ -227,8 +237,8 @@ def zone_entry(zone: Zone) -> dict[str, Any]:
     return {"loop": loop.tolist()}
 
 
-def triple_entry(triple: Triple) -> dict[str, Any]:
-    given = None if triple.given is None else known(triple.given)
+def make_triple_entry(triple: Triple) -> dict[str, Any]:
+    given = None if triple.given is None else drop_unknown_figures(triple.given)
     if given is not None:
         # It is at the point that the request names.
         del given["at"]
@@ -240,10 +250,10 @@ def triple_entry(triple: Triple) -> dict[str, Any]:
         "overhang": triple.overhang,
         "arm": triple.arm,
         "arm_at": list(triple.arm_at),
-        "best": known(triple.best),
+        "best": drop_unknown_figures(triple.best),
         "given": given,
     }
 
 
-def known(figures: ClampFigures) -> dict[str, Any]:
+def drop_unknown_figures(figures: ClampFigures) -> dict[str, Any]:
     return asdict(figures, filter=lambda _, value: value is not None and value is not False)

@@ -12,7 +12,7 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.input_forms import LONGEST_NAME
 from workhold.files.result.forms import FormPart
-from workhold.files.text import json_value, read_text
+from workhold.files.text import parse_json, read_text
 from workhold.model.requirements import ANY_DIRECTION, Zone, circle_zone, make_zone, polygon_zone
 from workhold.model.support_request import SpatialLoad, SupportRequest, compute_usual_head
 
@@ -35,8 +35,8 @@ class ZonePart(FormPart):
     polygon: list[Two] | None = None
     loop: Loop | None = None
 
-    def zone(self) -> Zone:
-        """The zone; refuses what is none."""
+    def to_zone(self) -> Zone:
+        """Return the zone; refuse what is none."""
         if self.circle is not None:
             return circle_zone(*self.circle)
         if self.polygon is not None:
@@ -91,7 +91,7 @@ class SpatialLoadPart(FormPart):
     tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
 
     def load(self, thickness: float) -> SpatialLoad:
-        """The load with its heights written out; refuses what is none."""
+        """Return the load with its heights written out; refuse what is none."""
         return SpatialLoad(**dict(self)).at_height(thickness)
 
 
@@ -149,7 +149,7 @@ class ReadFigures:
     hangs: bool
 
     @classmethod
-    def of(cls, part: ClampFiguresPart) -> ReadFigures:
+    def from_part(cls, part: ClampFiguresPart) -> ReadFigures:
         at = None if part.at is None else (part.at[0], part.at[1])
         return cls(at, part.clamp_needed, part.support_force, part.arm, part.share, part.lift, part.hangs)
 
@@ -168,11 +168,11 @@ class TripleReader:
     holes: dict[tuple[str, int, int], tuple[str, int, int]] = field(factory=dict)
 
     def read(self, entry: dict[str, Any]) -> Any:
-        """The triple that an object of the file is; any other object as it is."""
-        return self.checked(entry) if entry.keys() >= {"holes", "standing"} else entry
+        """Return the triple that an object of the file is; any other object as it is."""
+        return self.read_triple(entry) if entry.keys() >= {"holes", "standing"} else entry
 
-    def checked(self, entry: Any) -> ReadTriple:
-        """A triple; raises ValidationError for what is none."""
+    def read_triple(self, entry: Any) -> ReadTriple:
+        """Return a triple; raise ValidationError for what is none."""
         part = TriplePart.model_validate(entry)
         self.count += 1
         return ReadTriple(
@@ -183,8 +183,8 @@ class TripleReader:
             part.overhang,
             part.arm,
             (part.arm_at[0], part.arm_at[1]),
-            ReadFigures.of(part.best),
-            None if part.given is None else ReadFigures.of(part.given),
+            ReadFigures.from_part(part.best),
+            None if part.given is None else ReadFigures.from_part(part.given),
         )
 
 
@@ -215,8 +215,8 @@ class SupportsPart(FormPart):
     # They are checked one by one, see ``TripleReader``.
     triples: list[Any]
 
-    def head(self) -> dict[str, Any]:
-        """The head of a result file about the same part and toolkit."""
+    def to_head(self) -> dict[str, Any]:
+        """Return the head of a result file about the same part and toolkit."""
         toolkit = {"vise": self.vise} if self.vise is not None else {"toolkit": self.toolkit}
         space = {"solid": self.solid, "outlines": self.outlines}
         known = {name: value for name, value in space.items() if value is not None}
@@ -228,8 +228,8 @@ class SupportsPart(FormPart):
             "counts": {},
         }
 
-    def request(self) -> SupportRequest:
-        """What was asked.
+    def to_request(self) -> SupportRequest:
+        """Return what was asked.
 
         Raises
         ------
@@ -251,11 +251,11 @@ class SupportsPart(FormPart):
             band=(low, high),
             bands=tuple(None if one is None else (one[0], one[1]) for one in bands) if any(bands) else None,
             pad_margin=pads.pad_margin,
-            bottom=face_of(pads.bottom),
-            top=face_of(tip.top),
+            bottom=read_face_loops(pads.bottom),
+            top=read_face_loops(tip.top),
             top_heights=tip.top_heights,
-            bottom_zones=tuple(one.zone() for one in pads.zones),
-            top_zones=tuple(one.zone() for one in tip.zones),
+            bottom_zones=tuple(one.to_zone() for one in pads.zones),
+            top_zones=tuple(one.to_zone() for one in tip.zones),
             inside=tip.tip_radius if tip.inside is None else tip.inside,
             reach=tip.reach,
             point=tip.point,
@@ -268,13 +268,13 @@ class SupportsPart(FormPart):
         )
 
 
-def face_of(loops: list[Loop] | None) -> list[Loop] | None:
-    """The loops of a face: none around nothing, and None where nobody says."""
+def read_face_loops(loops: list[Loop] | None) -> list[Loop] | None:
+    """Return the loops of a face: none around nothing, and None where nobody says."""
     return None if loops is None else [loop for loop in loops if loop]
 
 
 def read_supports_part(path: Path) -> SupportsPart:
-    """The content of a file of supports, its form checked.
+    """Return the content of a file of supports, its form checked.
 
     Raises
     ------
@@ -284,7 +284,7 @@ def read_supports_part(path: Path) -> SupportsPart:
     reader, place = TripleReader(), ""
     try:
         place = "triples"
-        content = json_value(read_text(path, LIMITS["supports"]), reader.read, TIMES)
+        content = parse_json(read_text(path, LIMITS["supports"]), reader.read, TIMES)
         place = ""
         part = SupportsPart.model_validate(content)
         place, reader.count = "triples", 0
@@ -292,7 +292,7 @@ def read_supports_part(path: Path) -> SupportsPart:
         for number, one in enumerate(part.triples):
             if not isinstance(one, ReadTriple):
                 reader.count = number
-                reader.checked(one)
+                reader.read_triple(one)
         return part
     except InputError as error:
         raise InputError(f"{path} is not a file of supports: {error}") from error

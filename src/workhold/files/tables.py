@@ -24,7 +24,7 @@ from workhold.errors import InputError
 from workhold.files.budget import Budget
 from workhold.limits import read_number
 
-__all__ = ["MOST_COLUMNS", "MOST_LETTERS", "NOT_GIVEN", "SAVED", "CsvRow", "CsvTable", "table_of"]
+__all__ = ["MOST_COLUMNS", "MOST_LETTERS", "NOT_GIVEN", "SAVED", "CsvRow", "CsvTable", "read_table"]
 
 # Letters of a cell, and columns: more than anything that is read from tables needs.
 MOST_LETTERS, MOST_COLUMNS = 10_000, 1_000
@@ -62,8 +62,8 @@ class CsvRow:
     def __str__(self) -> str:
         return f"line {self.line}, row {self.row}"
 
-    def value(self, name: str) -> Any:
-        """The cell of a column for a number, with a point for a comma where commas separate no cells.
+    def read_number_cell(self, name: str) -> Any:
+        """Return the cell of a column for a number, with a point for a comma where commas separate no cells.
 
         None where it is not given. A cell that is no number stays as it is, for a sentence about it.
         """
@@ -73,14 +73,14 @@ class CsvRow:
         return cell if self.mark == "," else cell.replace(",", ".")
 
     def number(self, name: str) -> float:
-        """The number in a column that each row must have.
+        """Return the number in a column that each row must have.
 
         Raises
         ------
         InputError
             With line, row and column, where there is none.
         """
-        value = self.value(name)
+        value = self.read_number_cell(name)
         number = nan if value is None else read_number(value)
         if not isfinite(number):
             said = "there is no number" if value is None else f"'{value[:40]}' is not a finite number"
@@ -112,7 +112,7 @@ class CsvTable:
     names: tuple[str, ...] = field(default=(), init=False)
 
     def place(self, column: int | None = None, line: int | None = None) -> str:
-        """Where in the table a cell stands, its column counted from 0, or the row that is read."""
+        """Return where in the table a cell stands, its column counted from 0, or the row that is read."""
         words = f"line {self.line if line is None else line}"
         words += f", row {self.number}" if self.names else ""
         if column is None:
@@ -120,22 +120,22 @@ class CsvTable:
         name = self.names[column] if column < len(self.names) else ""
         return f"{words}, column {column + 1}" + (f" ({name[:40]})" if name else "")
 
-    def rows(self) -> Iterator[CsvRow]:
-        """Yields the rows that have a cell, once.
+    def iterate_rows(self) -> Iterator[CsvRow]:
+        """Yield the rows that have a cell, once.
 
         Raises
         ------
         InputError
             For a cell under no name, quotes that do not end, a cell or row that is too large, and NUL bytes.
         """
-        while (read := self.next_row()) is not None:
+        while (read := self.read_next_row()) is not None:
             line, cells = read
             given = {k: cell for k, cell in enumerate(cells) if cell}
             last = max(given)
             if last >= len(self.names):
                 raise InputError(
                     f"{self.place(line=line)} has {last + 1} cells under {len(self.names)} names: put a cell "
-                    f"with {called(self.mark)} in double quotes, or leave out the cells that are too many."
+                    f"with {name_separator(self.mark)} in double quotes, or leave out the cells that are too many."
                 )
             for k in given:
                 if not self.names[k]:
@@ -143,24 +143,24 @@ class CsvTable:
             self.budget.spend()
             yield CsvRow(self.number, line, {self.names[k]: cell for k, cell in given.items()}, self.mark)
 
-    def next_row(self) -> tuple[int, list[str]] | None:
-        """The line and the cells of the next row that has one; None at the end."""
+    def read_next_row(self) -> tuple[int, list[str]] | None:
+        """Return the line and the cells of the next row that has one; None at the end."""
         self.number += bool(self.names)
         while self.at < len(self.text):
             if self.remark is not None and (found := self.remark.match(self.text, self.at)):
                 self.at, self.line = found.end(), self.line + 1
                 continue
             line = self.line
-            cells = self.cells()
+            cells = self.read_cells()
             if any(cells):
                 return line, cells
         return None
 
-    def cells(self) -> list[str]:
-        """The cells to the end of the line, without spaces around them."""
+    def read_cells(self) -> list[str]:
+        """Return the cells to the end of the line, without spaces around them."""
         cells = list[str]()
         while True:
-            cells.append(self.next_cell(len(cells)))
+            cells.append(self.read_next_cell(len(cells)))
             if len(cells) > MOST_COLUMNS:
                 raise InputError(f"{self.place()} has more than {MOST_COLUMNS:,} cells: leave some out.")
             end = self.text[self.at : self.at + 1]
@@ -169,8 +169,8 @@ class CsvTable:
                 self.line += 1
                 return cells
 
-    def next_cell(self, column: int) -> str:
-        """The next cell, up to what separates it from the one after it."""
+    def read_next_cell(self, column: int) -> str:
+        """Return the next cell, up to what separates it from the one after it."""
         found = QUOTED.match(self.text, self.at)
         if found is not None:
             cell, end = found[1].replace('""', '"'), found.end()
@@ -196,13 +196,13 @@ class CsvTable:
         return cell.strip()
 
 
-def called(mark: str) -> str:
-    """The letters that separate cells, in words."""
+def name_separator(mark: str) -> str:
+    """Return the letters that separate cells, in words."""
     return {",": "commas", ";": "semicolons"}.get(mark, "tabs")
 
 
-def table_of(text: str, budget: Budget, remarks: str = "") -> CsvTable:
-    """The table of a text: the names of its columns in small letters, and its rows.
+def read_table(text: str, budget: Budget, remarks: str = "") -> CsvTable:
+    """Return the table of a text: the names of its columns in small letters, and its rows.
 
     Parameters
     ----------
@@ -211,13 +211,13 @@ def table_of(text: str, budget: Budget, remarks: str = "") -> CsvTable:
     Raises
     ------
     InputError
-        For a text without names, and names given twice; see :meth:`CsvTable.rows`.
+        For a text without names, and names given twice; see :meth:`CsvTable.iterate_rows`.
 
     Examples
     --------
     >>> from workhold.files.budget import UNLIMITED
-    >>> table = table_of("a; b\\r1;\\"x; y\\"\\r\\r2\\r", Budget(UNLIMITED))
-    >>> table.names, [row.cells for row in table.rows()]
+    >>> table = read_table("a; b\\r1;\\"x; y\\"\\r\\r2\\r", Budget(UNLIMITED))
+    >>> table.names, [row.cells for row in table.iterate_rows()]
     (('a', 'b'), [{'a': '1', 'b': 'x; y'}, {'a': '2'}])
     """
     text = LINE_END.sub("\n", text)
@@ -225,7 +225,7 @@ def table_of(text: str, budget: Budget, remarks: str = "") -> CsvTable:
     first = SEPARATOR.match(text)
     table = CsvTable(text, ",", remark, budget, *((0, 1) if first is None else (first.end(), 2)))
     table.mark = first[1] if first and first[1] in MARKS else mark_of(table)
-    _, cells = table.next_row() or (0, [])
+    _, cells = table.read_next_row() or (0, [])
     names = [name.lower() for name in cells]
     while names and not names[-1]:
         names.pop()
@@ -239,7 +239,7 @@ def table_of(text: str, budget: Budget, remarks: str = "") -> CsvTable:
 
 
 def mark_of(table: CsvTable) -> str:
-    """What separates the cells: that of the usual three which stands most often between the names."""
+    """Return what separates the cells: that of the usual three which stands most often between the names."""
     at = table.at
     while (found := BLANK.match(table.text, at)) or (
         table.remark and (found := table.remark.match(table.text, at))

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from workhold.errors import InputError
 from workhold.files.budget import FileLimits
 
-__all__ = ["json_value", "read_at_most", "read_limited", "read_text", "toml_table"]
+__all__ = ["parse_json", "read_at_most", "read_limited", "read_text", "parse_toml"]
 
 # Floats end at 1.8e308.
 MOST_DIGITS = 308
@@ -28,7 +28,7 @@ MOST_BRACKETS, MOST_COMMAS = 1_000_000, 2_000_000
 
 
 def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -> str:
-    """The text of a UTF-8 file, with or without a byte order mark.
+    """Return the text of a UTF-8 file, with or without a byte order mark.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -
 
 
 def read_limited(path: Path, limits: FileLimits) -> bytes:
-    """The content of a file.
+    """Return the content of a file.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
 
 
 def read_at_most(path: Path, most: int | None) -> bytes:
-    """The bytes of a regular file; of one with more than ``most``, at least one more than that."""
+    """Return the bytes of a regular file; of one with more than ``most``, at least one more than that."""
     size = path.stat().st_size
     with path.open("rb") as stream:
         # As many bytes as are asked for are set aside before any is read.
@@ -95,8 +95,8 @@ def read_at_most(path: Path, most: int | None) -> bytes:
     return content
 
 
-def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, times: float = 1.0) -> Any:
-    """The content of JSON text.
+def parse_json(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, times: float = 1.0) -> Any:
+    """Return the content of JSON text.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, t
                     f"{'values' if what == ',' else 'lists and objects'}: save less in it."
                 )
     try:
-        return decoder(hook).decode(text)
+        return make_json_decoder(hook).decode(text)
     except json.JSONDecodeError as error:
         raise InputError(
             f"the file is not valid JSON: {error.msg.lower()} at line {error.lineno}, column {error.colno}."
@@ -125,8 +125,8 @@ def json_value(text: str, hook: Callable[[dict[str, Any]], Any] | None = None, t
         raise InputError("the file is nested too deeply.") from error
 
 
-def toml_table(text: str) -> dict[str, Any]:
-    """The content of TOML text.
+def parse_toml(text: str) -> dict[str, Any]:
+    """Return the content of TOML text.
 
     Raises
     ------
@@ -147,19 +147,19 @@ def toml_table(text: str) -> dict[str, Any]:
 
 
 def refuse_constant(name: str) -> NoReturn:
-    """Refuses the NaN and the infinities that JSON does not have."""
+    """Refuse the NaN and the infinities that JSON does not have."""
     raise InputError(f"{name} is not a number: correct it.")
 
 
-def whole_number(digits: str) -> int:
-    """A whole number; refuses one that a float cannot hold."""
+def parse_whole_number(digits: str) -> int:
+    """Return a whole number; refuse one that a float cannot hold."""
     if len(digits) > MOST_DIGITS:
         raise InputError(f"the file holds a number with {len(digits)} digits: correct it.")
     return int(digits)
 
 
-def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    """A JSON object; refuses one with a key that is given twice."""
+def refuse_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return a JSON object; refuse one with a key that is given twice."""
     content = dict(pairs)
     if len(content) < len(pairs):
         keys = [key for key, _ in pairs]
@@ -169,7 +169,7 @@ def each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def refuse_long_numbers(value: Any) -> None:
-    """Refuses a whole number too large for a float, wherever in tables and lists it stands."""
+    """Refuse a whole number too large for a float, wherever in tables and list it stands."""
     if isinstance(value, dict):
         value = list(value.values())
     if isinstance(value, list):
@@ -180,9 +180,11 @@ def refuse_long_numbers(value: Any) -> None:
 
 
 @lru_cache(maxsize=16)
-def decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
+def make_json_decoder(hook: Callable[[dict[str, Any]], Any] | None) -> json.JSONDecoder:
     return json.JSONDecoder(
         parse_constant=refuse_constant,
-        parse_int=whole_number,
-        object_pairs_hook=each_once if hook is None else lambda pairs: hook(each_once(pairs)),
+        parse_int=parse_whole_number,
+        object_pairs_hook=refuse_repeated_keys
+        if hook is None
+        else lambda pairs: hook(refuse_repeated_keys(pairs)),
     )

@@ -30,29 +30,29 @@ from attrs import evolve, frozen
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
-from workhold.files.text import read_text, toml_table
+from workhold.files.text import parse_toml, read_text
 from workhold.fixels.fields import COLUMNS, OPTIONS, PEG_RADIUS, PITCH
-from workhold.fixels.kinds import KINDS, USUAL, kind_of, toolkit_of
-from workhold.fixels.support_hardware import HARDWARE, TOP_CLAMP, TopClamp, hardware_of
+from workhold.fixels.kinds import KINDS, USUAL, make_toolkit, resolve_kind
+from workhold.fixels.support_hardware import HARDWARE, TOP_CLAMP, TopClamp, convert_hardware
 from workhold.fixels.table import Form
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import DowelSize, Fit, Limits, compute_peg_error, refuse_limits
 from workhold.model.requirements import Tolerance
-from workhold.units import Unit, unit_named
+from workhold.units import Unit, find_unit
 
 __all__ = [
     "DowelSeries",
     "LoadedToolkit",
-    "described_toolkit",
-    "dowel_series",
-    "dowel_size",
+    "make_described_toolkit",
+    "load_dowel_series",
+    "find_dowel_size",
     "is_sold",
     "load_toolkit",
-    "preset",
-    "preset_fields",
-    "preset_names",
-    "preset_names_of",
-    "preset_tolerance",
+    "load_preset",
+    "load_preset_fields",
+    "list_preset_names",
+    "list_presets_of_kind",
+    "load_preset_tolerance",
     "read_toolkit_file",
 ]
 
@@ -76,29 +76,29 @@ class DowelSeries:
 
 
 @cache
-def dowel_series() -> tuple[DowelSeries, ...]:
-    """The standards whose pins are known.
+def load_dowel_series() -> tuple[DowelSeries, ...]:
+    """Return the standards whose pins are known.
 
     Examples
     --------
-    >>> [series.name for series in dowel_series()]
+    >>> [series.name for series in load_dowel_series()]
     ['ASME B18.8.5M', 'ASME B18.8.2', 'ISO 2338 m6', 'ISO 2338 h8']
     """
     text = (files("workhold") / "data" / "dowels.toml").read_text(encoding="utf-8")
     found = []
     for entry in tomllib.loads(text)["series"]:
-        unit = unit_named(entry["unit"])
+        unit = find_unit(entry["unit"])
         sizes = []
         for row in entry["sizes"]:
-            nominal, *limits = (unit.length(number) for number in row)
+            nominal, *limits = (unit.to_mm(number) for number in row)
             hole = (limits[2], limits[3]) if len(limits) == 4 else None
             sizes.append(DowelSize(nominal, (limits[0], limits[1]), hole))
         found.append(DowelSeries(entry["name"], unit, entry["source"], tuple(sizes)))
     return tuple(found)
 
 
-def dowel_size(standard: str, diameter: float) -> DowelSize:
-    """A standard's pin of a nominal diameter in mm.
+def find_dowel_size(standard: str, diameter: float) -> DowelSize:
+    """Return a standard's pin of a nominal diameter in mm.
 
     Raises
     ------
@@ -107,20 +107,20 @@ def dowel_size(standard: str, diameter: float) -> DowelSize:
 
     Examples
     --------
-    >>> dowel_size("ASME B18.8.5M", 6.0).pin
+    >>> find_dowel_size("ASME B18.8.5M", 6.0).pin
     (6.003, 6.009)
     """
-    for series in dowel_series():
+    for series in load_dowel_series():
         if series.name.lower() == " ".join(standard.lower().split()):
             for size in series.sizes:
                 if abs(size.nominal - diameter) < SAME_SIZE:
                     return size
-            sizes = ", ".join(series.unit.figure(size.nominal) for size in series.sizes)
+            sizes = ", ".join(series.unit.format_short_length(size.nominal) for size in series.sizes)
             raise InputError(
-                f"{series.name} has no dowel of {series.unit.figure(diameter)} {series.unit.abbreviation}: "
+                f"{series.name} has no dowel of {series.unit.format_short_length(diameter)} {series.unit.abbreviation}: "
                 f"its sizes are {sizes} {series.unit.abbreviation}."
             )
-    names = ", ".join(series.name for series in dowel_series())
+    names = ", ".join(series.name for series in load_dowel_series())
     raise InputError(f'dowel "{standard[:40]}" is not known: the standards are {names}.')
 
 
@@ -156,35 +156,39 @@ class LoadedToolkit:
     @property
     def toolkit(self) -> Toolkit:
         """The toolkit with nothing changed."""
-        return toolkit_of(self.kind, {**self.fields, "tolerance": self.tolerance})
+        return make_toolkit(self.kind, {**self.fields, "tolerance": self.tolerance})
 
 
 def read_toolkit_file(path: Path) -> LoadedToolkit:
-    from workhold.files.input_forms import checked_toolkit
+    from workhold.files.input_forms import check_toolkit_entries
 
     try:
-        return described_toolkit(path.stem, checked_toolkit(toml_table(read_text(path, LIMITS["toolkit"]))))
+        return make_described_toolkit(
+            path.stem, check_toolkit_entries(parse_toml(read_text(path, LIMITS["toolkit"])))
+        )
     except InputError as error:
         raise InputError(f"{path.name or path}: {error}") from error
 
 
-def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
-    """The toolkit of a file's entries, which are of the right types; refuses values that no toolkit can have."""
-    unit = unit_named(entries["unit"])
+def make_described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
+    """Return the toolkit of a file's entries, which are of the right types; refuse values that no toolkit can have."""
+    unit = find_unit(entries["unit"])
     if unit.name not in ("mm", "inch"):
         raise InputError('the unit of a toolkit is "mm" or "inch".')
-    kind, said = kind_of(entries.get("kind", USUAL))
-    given = {row.name: in_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries}
+    kind, said = resolve_kind(entries.get("kind", USUAL))
+    given = {
+        row.name: convert_to_mm(row.form, entries[row.name], unit) for row in OPTIONS if row.name in entries
+    }
     fields: dict[str, Any] = {**said, **given}
     for key in HARDWARE:
         if key in entries:
             stresses = {row.name for row in HARDWARE[key].table.fields if row.form == "stress"}
             figures = {
-                figure: value if figure in stresses else lengths_in_mm(value, unit)
+                figure: value if figure in stresses else convert_lengths_to_mm(value, unit)
                 for figure, value in entries[key].items()
             }
-            fields[key] = hardware_of(key, figures)
-    refuse_wide_pads(toolkit_of(kind, fields))
+            fields[key] = convert_hardware(key, figures)
+    refuse_wide_pads(make_toolkit(kind, fields))
     return LoadedToolkit(
         name=name,
         title=entries.get("title", ""),
@@ -192,30 +196,32 @@ def described_toolkit(name: str, entries: Mapping[str, Any]) -> LoadedToolkit:
         unit=unit,
         kind=kind,
         fields=fields,
-        tolerance=tolerance_of(entries, unit, fields.get(PEG_RADIUS.name, 0.0)),
+        tolerance=make_tolerance(entries, unit, fields.get(PEG_RADIUS.name, 0.0)),
         assumed=tuple(entries.get("assumed", ())),
     )
 
 
-def in_mm(form: Form, value: Any, unit: Unit) -> Any:
+def convert_to_mm(form: Form, value: Any, unit: Unit) -> Any:
     """Convert what an entry gives for a field to the constructor's argument, with lengths in mm."""
     if form in ("count", "directions", "choice", "force"):
         return value
     if form == "holes":
         return tuple(value)
-    lengths = tuple(map(unit.length, value if isinstance(value, list) else [value]))
+    lengths = tuple(map(unit.to_mm, value if isinstance(value, list) else [value]))
     if form == "length":
         return lengths[0]
     return 2 * lengths if form == "pitch" and len(lengths) == 1 else lengths
 
 
-def lengths_in_mm(value: Any, unit: Unit) -> Any:
-    """A length, or lengths in lists of any depth, in mm."""
-    return [lengths_in_mm(one, unit) for one in value] if isinstance(value, list) else unit.length(value)
+def convert_lengths_to_mm(value: Any, unit: Unit) -> Any:
+    """Return a length, or lengths in lists of any depth, in mm."""
+    return (
+        [convert_lengths_to_mm(one, unit) for one in value] if isinstance(value, list) else unit.to_mm(value)
+    )
 
 
 def refuse_wide_pads(toolkit: Toolkit) -> None:
-    """Refuses pads of supports that would overlap in neighbouring holes."""
+    """Refuse pads of supports that would overlap in neighbouring holes."""
     apart = min((pitch for plate in toolkit.plates for pitch in plate.pitch), default=inf)
     radius = None if toolkit.supports is None else toolkit.supports.pad_radius
     if radius is not None and 2 * radius > apart:
@@ -226,18 +232,19 @@ def refuse_wide_pads(toolkit: Toolkit) -> None:
 
 
 def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | None:
-    """Pin and hole as the file gives them, or as the standard it names does; None when it gives neither.
+    """Return the pin and hole as the file gives them, or as the standard it names does; None when it gives
+    neither.
 
     Refuses one without the other, and limits that are not those of the peg.
     """
     limits: dict[str, Limits | None] = {"pin_diameter": None, "hole_diameter": None}
     if "dowel" in entries:
-        size = dowel_size(entries["dowel"], 2 * peg_radius)
+        size = find_dowel_size(entries["dowel"], 2 * peg_radius)
         limits = {"pin_diameter": size.pin, "hole_diameter": size.hole}
     for key in limits:
         if key in entries:
             low, high = entries[key]
-            limits[key] = (unit.length(low), unit.length(high))
+            limits[key] = (unit.to_mm(low), unit.to_mm(high))
     pin, hole = limits["pin_diameter"], limits["hole_diameter"]
     if pin is None and hole is None:
         if "hole_position" in entries:
@@ -255,12 +262,12 @@ def fit_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Fit | N
     position = entries.get("hole_position")
     if position is not None and position < 0:
         raise InputError(f"hole_position {position:g} is negative: give 0 or more.")
-    length = ASSUMED_POSITION if position is None else unit.length(position)
+    length = ASSUMED_POSITION if position is None else unit.to_mm(position)
     return Fit(pin, hole, length, position is None, entries.get("dowel", ""))
 
 
-def tolerance_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Tolerance:
-    """The tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
+def make_tolerance(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> Tolerance:
+    """Return the tolerance that the file gives, or that follows from its pin and hole, or else the usual one.
 
     Refuses negative lengths, and what :func:`fit_of` does.
     """
@@ -269,7 +276,7 @@ def tolerance_of(entries: Mapping[str, Any], unit: Unit, peg_radius: float) -> T
     peg = (
         usual.peg if fit is None else round(compute_peg_error(peg_radius, fit.pin, fit.hole, fit.position), 9)
     )
-    given = {key: unit.length(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
+    given = {key: unit.to_mm(entries[key]) for key in ("peg_tolerance", "face_tolerance") if key in entries}
     return Tolerance(given.get("peg_tolerance", peg), given.get("face_tolerance", usual.face), fit)
 
 
@@ -280,16 +287,17 @@ TIP_MARGIN = 1.0
 
 
 @cache
-def preset_names() -> tuple[str, ...]:
-    """The names of the presets, what is sold first, of that plates before vises, then by kind and by pitch.
+def list_preset_names() -> tuple[str, ...]:
+    """Return the names of the presets, what is sold first, of that plates before vises, then by kind and by
+    pitch.
 
     Examples
     --------
-    >>> preset_names()[0]
+    >>> list_preset_names()[0]
     'clamp-plate-20mm'
     """
     presets = [
-        preset(entry.name.removesuffix(ENDING))
+        load_preset(entry.name.removesuffix(ENDING))
         for entry in (files("workhold") / "data" / "toolkits").iterdir()
         if entry.name.endswith(ENDING)
     ]
@@ -306,7 +314,7 @@ def preset_names() -> tuple[str, ...]:
 
 
 def is_sold(name: str) -> bool:
-    """Whether what a preset is named after can be bought or drilled; the paper's grippers cannot.
+    """Return whether what a preset is named after can be bought or drilled; the paper's grippers cannot.
 
     >>> is_sold("table-50mm"), is_sold("gripper-one-column, radius 2")
     (True, False)
@@ -314,10 +322,10 @@ def is_sold(name: str) -> bool:
     return not name.startswith("gripper-")
 
 
-def preset(name: str) -> LoadedToolkit:
-    """The preset of a name that exists."""
+def load_preset(name: str) -> LoadedToolkit:
+    """Return the preset of a name that exists."""
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
-    found = described_toolkit(name, tomllib.loads(text))
+    found = make_described_toolkit(name, tomllib.loads(text))
     if found.toolkit.flat_jaws is not None:
         return found
     clamp = found.fields.get(TOP_CLAMP) or TopClamp()
@@ -327,7 +335,7 @@ def preset(name: str) -> LoadedToolkit:
 
 
 def load_toolkit(name: str | Path) -> LoadedToolkit:
-    """Loads a toolkit by the name of a preset or from a TOML file; a file wins.
+    """Load a toolkit by the name of a preset or from a TOML file; a file wins.
 
     Parameters
     ----------
@@ -350,24 +358,25 @@ def load_toolkit(name: str | Path) -> LoadedToolkit:
         is_path = path.exists()
     except (OSError, ValueError):
         is_path = False
-    names = preset_names()
+    names = list_preset_names()
     asked = str(name).strip().lower()
     if is_path and asked and not (path.is_dir() and asked in names):
         return read_toolkit_file(path)
     if asked in names:
-        return preset(asked)
+        return load_preset(asked)
     close = get_close_matches(asked, names, n=3, cutoff=0.5) or names
     raise InputError(
         f"{str(name)[:200]!r}: file not found, and no toolkit has that name (try {', '.join(close)})."
     )
 
 
-def preset_names_of(kind: type[Toolkit]) -> tuple[str, ...]:
-    return tuple(name for name in preset_names() if KINDS[preset(name).kind] is kind)
+def list_presets_of_kind(kind: type[Toolkit]) -> tuple[str, ...]:
+    return tuple(name for name in list_preset_names() if KINDS[load_preset(name).kind] is kind)
 
 
-def preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
-    """The fields of a preset or of a user's file, for a class of toolkits or one that has all fields of it.
+def load_preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
+    """Return the fields of a preset or of a user's file, for a class of toolkits or one that has all fields
+    of it.
 
     Raises
     ------
@@ -381,8 +390,8 @@ def preset_fields(kind: type[Toolkit], name: str) -> dict[str, Any]:
     return loaded.fields
 
 
-def preset_tolerance(name: str) -> Tolerance:
-    """How far pegs and faces of a preset or of a user's file may be off.
+def load_preset_tolerance(name: str) -> Tolerance:
+    """Return how far pegs and faces of a preset or of a user's file may be off.
 
     Raises
     ------

@@ -27,10 +27,10 @@ __all__ = [
     "Holes",
     "Measure",
     "Travel",
-    "column_letters",
-    "hole_name",
-    "holes_named",
-    "letter_of",
+    "make_column_letters",
+    "make_hole_name",
+    "parse_hole_name",
+    "find_carrier_letter",
 ]
 
 # The carrier that is the only one with holes.
@@ -39,10 +39,10 @@ NAME = re.compile(r"([A-Z])-?([A-Z]{1,3})([1-9][0-9]{0,8})?")
 
 
 @cache
-def column_letters(column: int) -> str:
-    """Letters of a column counted from 0: A to Z, then AA, AB and so on.
+def make_column_letters(column: int) -> str:
+    """Return the letters of a column counted from 0: A to Z, then AA, AB and so on.
 
-    >>> [column_letters(c) for c in (0, 25, 26, 51, 52)]
+    >>> [make_column_letters(c) for c in (0, 25, 26, 51, 52)]
     ['A', 'Z', 'AA', 'AZ', 'BA']
     """
     letters = ""
@@ -53,18 +53,18 @@ def column_letters(column: int) -> str:
     return letters
 
 
-def hole_name(carrier: str, column: int, row: int | None) -> str:
-    """The name of a hole, or of a whole column, of a carrier of a name; column and row count from 0.
+def make_hole_name(carrier: str, column: int, row: int | None) -> str:
+    """Return the name of a hole, or of a whole column, of a carrier of a name; column and row count from 0.
 
-    >>> hole_name("left", 1, 2), hole_name("right", 0, None), hole_name("plate", 1, 2)
+    >>> make_hole_name("left", 1, 2), make_hole_name("right", 0, None), make_hole_name("plate", 1, 2)
     ('L-B3', 'R-A', 'B3')
     """
-    letter = letter_of(carrier)
-    return f"{letter and letter + '-'}{column_letters(column)}{'' if row is None else row + 1}"
+    letter = find_carrier_letter(carrier)
+    return f"{letter and letter + '-'}{make_column_letters(column)}{'' if row is None else row + 1}"
 
 
-def letter_of(carrier: str) -> str:
-    """What the names of a carrier's holes begin with; nothing where there is but one lattice."""
+def find_carrier_letter(carrier: str) -> str:
+    """Return what the names of a carrier's holes begin with; nothing where there is but one lattice."""
     return "" if carrier == ALONE else carrier[0].upper()
 
 
@@ -85,11 +85,11 @@ class Holes:
 
     @property
     def name(self) -> str:
-        return hole_name(self.carrier, self.column, self.row)
+        return make_hole_name(self.carrier, self.column, self.row)
 
 
-def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
-    """The hole or column of a name, as :func:`hole_name` gives it.
+def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> Holes:
+    """Return the hole or column of a name, as :func:`make_hole_name` gives it.
 
     Parameters
     ----------
@@ -98,11 +98,15 @@ def holes_named(name: str, carriers: Iterable[str], noun: str) -> Holes:
 
     Examples
     --------
-    >>> holes_named("R-A3", ("left", "right"), "jaw")
+    >>> parse_hole_name("R-A3", ("left", "right"), "jaw")
     Holes(carrier='right', column=0, row=2)
     """
     match = NAME.fullmatch(name.strip().upper())
-    carrier = None if match is None else next((one for one in carriers if letter_of(one) == match[1]), None)
+    carrier = (
+        None
+        if match is None
+        else next((one for one in carriers if find_carrier_letter(one) == match[1]), None)
+    )
     if match is None or carrier is None:
         raise InputError(
             f"{name!r} names no hole: give {noun}, column letter and row, such as L-B3, or L-B for a whole "
@@ -309,7 +313,7 @@ class Carrier:
         return "role", self.noun if self.has_lattice and self.travel is not None else self.contact.role
 
     def place_name(self, column: int, row: int) -> str:
-        """The name of a hole for its peg, such as "L-B3"; a clamp's noun with its hole or its line.
+        """Return the name of a hole for its peg, such as "L-B3"; a clamp's noun with its hole or its line.
 
         >>> from workhold import Plate
         >>> clamp = Plate(pitch=20, peg_radius=3).carriers[1]
@@ -319,22 +323,22 @@ class Carrier:
         if self.is_wall:
             return self.noun
         if self.on is None:
-            return hole_name(self.name, column, row)
+            return make_hole_name(self.name, column, row)
         if self.has_a_hole:
-            return f"{self.noun} {hole_name(self.on, column, row)}"
+            return f"{self.noun} {make_hole_name(self.on, column, row)}"
         return (
             f"{self.noun} row {row + 1}"
             if self.is_along_x
-            else f"{self.noun} column {column_letters(column)}"
+            else f"{self.noun} column {make_column_letters(column)}"
         )
 
     @property
     def letter(self) -> str:
         """What the names of its holes begin with."""
-        return letter_of(self.name)
+        return find_carrier_letter(self.name)
 
     def is_blocked(self, column: int, row: int) -> bool:
-        """Whether no peg can stand in a hole."""
+        """Return whether no peg can stand in a hole."""
         return not {Holes(self.name, column), Holes(self.name, column, row)}.isdisjoint(self.blocked)
 
     def place(self, column: Any, row: Any, travelled: Any = 0.0) -> tuple[Any, Any]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.making import finer, made_from_table, wall_carrier
+from workhold.fixels.making import make_class_from_table, make_wall_carrier, suggest_half_pitch
 from workhold.fixels.pegs import Flat
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
@@ -25,7 +25,7 @@ from workhold.units import Unit
 __all__ = ["Fence"]
 
 
-@made_from_table
+@make_class_from_table
 class Fence(Plate):
     """A plate with a straight fence along x at y = 0: the part lies flush against it, above it.
 
@@ -67,7 +67,7 @@ class Fence(Plate):
             fields.CLAMP_RADIUS,
             fields.TRAVEL,
             fields.CLAMPS,
-            fields.DIRECTION.shown(
+            fields.DIRECTION.relabel(
                 PageLabel(
                     "The clamp pushes", "any way", several=True, choices=fields.WAYS, when=fields.ONE_CLAMP
                 ),
@@ -82,7 +82,7 @@ class Fence(Plate):
             fields.FLAT,
             fields.LOCATOR_HEIGHTS,
             fields.CLAMP_HEIGHTS,
-            fields.WALL_HEIGHTS.shown(
+            fields.WALL_HEIGHTS.relabel(
                 PageLabel("Heights of the fence", "as all pegs"), figure="heights of the fence"
             ),
         ),
@@ -179,25 +179,25 @@ class Fence(Plate):
     def datum(self) -> Datum:
         """Where column A meets the fence."""
         plate, wall, *_ = self.carriers
-        return Datum.at_wall(wall, plate)
+        return Datum.from_wall(wall, plate)
 
     @property
     def half_turned(self) -> None:
         """The fence stays at its side."""
         return None
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """The clamp in all directions, and half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Yield the clamp in all directions, and half the pitch."""
         if not self.is_paired:
             yield Change("with a second clamp", {fields.CLAMPS.name: 2, fields.DIRECTION.name: None})
         if not self.is_paired and len(self.directions) < len(DIRECTIONS):
             yield Change(
                 "with the clamp in any of the four directions", {fields.DIRECTION.name: tuple(DIRECTIONS)}
             )
-        yield from finer(self)
+        yield from suggest_half_pitch(self)
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate, the wall, and for each direction the clamp."""
-        plate, *clamps = self.plate_and_clamps((0.0, self.wall_offset))
-        return plate, wall_carrier(self, "fence"), *clamps
+        plate, *clamps = self.make_plate_and_clamps((0.0, self.wall_offset))
+        return plate, make_wall_carrier(self, "fence"), *clamps

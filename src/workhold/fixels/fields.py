@@ -33,10 +33,10 @@ NAMES: Mapping[str, str] = {
 }
 
 
-def pair_words(one: str, other: str) -> str:
-    """What a pair of directions is called.
+def name_direction_pair(one: str, other: str) -> str:
+    """Return what a pair of directions is called.
 
-    >>> pair_words("-x", "-y"), pair_words("-x", "-x"), pair_words("-x", "+x")
+    >>> name_direction_pair("-x", "-y"), name_direction_pair("-x", "-x"), name_direction_pair("-x", "+x")
     ('to the left and downward', 'both to the left', 'against each other, to the left and right')
     """
     if one == other:
@@ -52,8 +52,10 @@ WAYS = tuple(Choice(way, TOWARDS[way]) for way in DIRECTIONS)
 # Half a turn of a plate makes the other pairs of these; a fence turns with the plate, so that there all pairs
 # differ.
 DISTINCT = (("-x", "-y"), ("-x", "+y"), ("-x", "-x"), ("-y", "-y"), ("-x", "+x"), ("-y", "+y"))
-PAIRS = tuple(Choice([one, other], pair_words(one, other)) for one, other in DISTINCT)
-ALL_PAIRS = tuple(Choice([*two], pair_words(*two)) for two in combinations_with_replacement(DIRECTIONS, 2))
+PAIRS = tuple(Choice([one, other], name_direction_pair(one, other)) for one, other in DISTINCT)
+ALL_PAIRS = tuple(
+    Choice([*two], name_direction_pair(*two)) for two in combinations_with_replacement(DIRECTIONS, 2)
+)
 
 PITCH = ToolkitField(
     "pitch",
@@ -253,8 +255,8 @@ WALL_OFFSET = ToolkitField(
 )
 
 
-def heights_of(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
-    """Returns the field of the heights between which what stands on a carrier touches.
+def make_heights_field(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
+    """Return the field of the heights between which what stands on a carrier touches.
 
     ``whose`` is what it is the height of, such as "the clamp's tip".
     """
@@ -272,12 +274,12 @@ def heights_of(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
     )
 
 
-LEFT_HEIGHTS = heights_of("left", "the left jaw's pegs", "jaws with pegs")
-RIGHT_HEIGHTS = heights_of("right", "the right jaw's pegs", "jaws with pegs")
-LOCATOR_HEIGHTS = heights_of("locator", "the locators", "locators")
-CLAMP_HEIGHTS = heights_of("clamp", "the clamp's tip", "clamp beside its jaws")
-WALL_HEIGHTS = heights_of("wall", "the straight wall", "wall")
-JAW_HEIGHTS = heights_of("jaw", "the jaw's pegs", "single jaw with pegs")
+LEFT_HEIGHTS = make_heights_field("left", "the left jaw's pegs", "jaws with pegs")
+RIGHT_HEIGHTS = make_heights_field("right", "the right jaw's pegs", "jaws with pegs")
+LOCATOR_HEIGHTS = make_heights_field("locator", "the locators", "locators")
+CLAMP_HEIGHTS = make_heights_field("clamp", "the clamp's tip", "clamp beside its jaws")
+WALL_HEIGHTS = make_heights_field("wall", "the straight wall", "wall")
+JAW_HEIGHTS = make_heights_field("jaw", "the jaw's pegs", "single jaw with pegs")
 
 JAW_HEIGHT = ToolkitField(
     "jaw_height",
@@ -406,11 +408,11 @@ OPTIONS = (
 )
 ON_A_PLATE = (
     PITCH,
-    COLUMNS.shown(
+    COLUMNS.relabel(
         PageLabel("Columns", "as needed", is_usual=True),
         default=None,
         lifted=Lifted("columns of holes", "holes", "with as many columns as needed"),
     ),
-    ROWS.shown(PageLabel("Rows", "as needed", is_usual=True)),
-    PEG_RADIUS.shown(PageLabel("Locator radius", is_usual=True)),
+    ROWS.relabel(PageLabel("Rows", "as needed", is_usual=True)),
+    PEG_RADIUS.relabel(PageLabel("Locator radius", is_usual=True)),
 )

@@ -14,7 +14,13 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
-from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle, wall_carrier
+from workhold.fixels.making import (
+    make_class_from_table,
+    make_lattice_carrier,
+    make_wall_carrier,
+    settle,
+    suggest_half_pitch,
+)
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import FieldTable, PageLabel
@@ -24,7 +30,7 @@ from workhold.units import Unit
 __all__ = ["FlatJaw"]
 
 
-@made_from_table
+@make_class_from_table
 class FlatJaw(Toolkit):
     """A vise whose fixed jaw is flat, along x at y = 0, with a plate of pegs on the jaw that moves, along y.
 
@@ -68,7 +74,7 @@ class FlatJaw(Toolkit):
         (
             *fields.ON_A_PLATE[:3],
             fields.PEG_RADIUS,
-            fields.MIN_GAP.shown(
+            fields.MIN_GAP.relabel(
                 PageLabel("Smallest opening", "peg radius"),
                 follows=fields.PEG_RADIUS.name,
                 figure="smallest opening",
@@ -80,7 +86,7 @@ class FlatJaw(Toolkit):
             fields.JAW_WIDTH,
             fields.FLAT,
             fields.JAW_HEIGHTS,
-            fields.WALL_HEIGHTS.shown(
+            fields.WALL_HEIGHTS.relabel(
                 PageLabel("Heights of the flat jaw", "as all pegs"), figure="heights of the flat jaw"
             ),
         ),
@@ -181,15 +187,15 @@ class FlatJaw(Toolkit):
     def carriers(self) -> tuple[Carrier, ...]:
         """The flat jaw, and the jaw that moves, whose travel is the jaw separation."""
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
-        jaw = lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
-        return wall_carrier(self, "flat jaw", self.jaw_width), jaw
+        jaw = make_lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
+        return make_wall_carrier(self, "flat jaw", self.jaw_width), jaw
 
     @property
     def datum(self) -> Datum:
         """Where column A meets the flat jaw; rows move with their jaw."""
         wall, jaw = self.carriers
-        return Datum.at_wall(wall, jaw)
+        return Datum.from_wall(wall, jaw)
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Half the pitch."""
-        yield from finer(self)
+    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Yield half the pitch."""
+        yield from suggest_half_pitch(self)

@@ -46,14 +46,14 @@ class JawPair:
     max_force: float | None
     screw_lead: float | None
 
-    def top(self, parallels: float) -> float:
-        """How high the jaws stand above the part's lower side on parallels of a height."""
+    def compute_top(self, parallels: float) -> float:
+        """Return how high the jaws stand above the part's lower side on parallels of a height."""
         return inf if self.height is None else self.height - parallels
 
-    def role(self, parallels: float) -> str:
-        """What the outline is called that the jaws meet with the part on parallels of a height."""
-        return f"jaws up to {round(self.top(parallels), 6):g} mm"
+    def name_outline_role(self, parallels: float) -> str:
+        """Return what the outline is called that the jaws meet with the part on parallels of a height."""
+        return f"jaws up to {round(self.compute_top(parallels), 6):g} mm"
 
-    def torque(self, force: float) -> float | None:
-        """The torque in N m on the screw that closes with a force in N; None where the lead is not known."""
+    def compute_torque(self, force: float) -> float | None:
+        """Return the torque in N m on the screw that closes with a force in N; None where the lead is not known."""
         return None if self.screw_lead is None else force * self.screw_lead / (2 * pi * SCREW_SHARE) / 1000.0

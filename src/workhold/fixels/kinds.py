@@ -17,7 +17,17 @@ from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.fixels.vise import OpeningVise, Vise
 
-__all__ = ["ALIASES", "KINDS", "PAGES", "TABLES", "USUAL", "kind_of", "owner_of", "table_of", "toolkit_of"]
+__all__ = [
+    "ALIASES",
+    "KINDS",
+    "PAGES",
+    "TABLES",
+    "USUAL",
+    "resolve_kind",
+    "find_owner",
+    "find_table",
+    "make_toolkit",
+]
 
 KINDS: Mapping[str, type[Toolkit]] = {
     one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw, PlainVise)
@@ -41,8 +51,8 @@ PAGES: Mapping[str, PageWords] = {
 }
 
 
-def kind_of(name: str) -> tuple[str, Mapping[str, Any]]:
-    """The kind of a name or an alias, and the fields that the alias says.
+def resolve_kind(name: str) -> tuple[str, Mapping[str, Any]]:
+    """Return the kind of a name or an alias, and the fields that the alias says.
 
     Raises
     ------
@@ -51,7 +61,7 @@ def kind_of(name: str) -> tuple[str, Mapping[str, Any]]:
 
     Examples
     --------
-    >>> kind_of("gripper")
+    >>> resolve_kind("gripper")
     ('vise', {'columns': 1})
     """
     if name in ALIASES:
@@ -61,18 +71,18 @@ def kind_of(name: str) -> tuple[str, Mapping[str, Any]]:
     return name, {}
 
 
-def table_of(kind: object) -> FieldTable:
-    """The table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
+def find_table(kind: object) -> FieldTable:
+    """Return the table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
     return TABLES.get(str(kind), TABLES[USUAL])
 
 
-def owner_of(row: ToolkitField) -> FieldTable:
-    """The first table that has a field of this name."""
+def find_owner(row: ToolkitField) -> FieldTable:
+    """Return the first table that has a field of this name."""
     return next(table for table in TABLES.values() if any(one.name == row.name for one in table.fields))
 
 
-def toolkit_of(kind: str, fields: Mapping[str, Any]) -> Toolkit:
-    """A toolkit of a kind.
+def make_toolkit(kind: str, fields: Mapping[str, Any]) -> Toolkit:
+    """Return a toolkit of a kind.
 
     Parameters
     ----------
@@ -87,10 +97,10 @@ def toolkit_of(kind: str, fields: Mapping[str, Any]) -> Toolkit:
 
     Examples
     --------
-    >>> toolkit_of("opening-vise", {"pitch": 10, "columns": 2, "peg_radius": 3}).clamping
+    >>> make_toolkit("opening-vise", {"pitch": 10, "columns": 2, "peg_radius": 3}).clamping
     -1
     """
-    known, said = kind_of(kind)
+    known, said = resolve_kind(kind)
     toolkit, given = KINDS[known], {**said, **fields}
     has = fields_dict(toolkit)  # type: ignore[arg-type]
     for name in given:

@@ -17,51 +17,55 @@ from attrs import NOTHING, evolve, field, frozen
 from attrs.converters import optional
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import WALL, Carrier, Holes, holes_named
+from workhold.fixels.carrier import WALL, Carrier, Holes, parse_hole_name
 from workhold.fixels.contacts import DIRECTIONS
 from workhold.fixels.fields import PITCH
-from workhold.fixels.pegs import flat_of, resolved_flat
-from workhold.fixels.support_hardware import HARDWARE, hardware_of
+from workhold.fixels.pegs import convert_flat, resolve_flat
+from workhold.fixels.support_hardware import HARDWARE, convert_hardware
 from workhold.fixels.table import SILENT, ToolkitField
 from workhold.fixels.toolkit import Change, Toolkit
-from workhold.limits import MOST_BLOCKED, MOST_HOLES, MOST_LENGTHS, real, refuse_long, refuse_strong
+from workhold.limits import MOST_BLOCKED, MOST_HOLES, MOST_LENGTHS, convert_real, refuse_long, refuse_strong
 
 __all__ = [
-    "finer",
-    "lattice_carrier",
-    "made_from_table",
-    "optional_length",
-    "pair",
+    "suggest_half_pitch",
+    "make_lattice_carrier",
+    "make_class_from_table",
+    "convert_optional_length",
+    "convert_pitch",
     "refuse_all_out_of_bounds",
     "refuse_many_holes",
     "settle",
-    "wall_carrier",
-    "whole",
+    "make_wall_carrier",
+    "convert_whole_number",
 ]
 
 
-def pair(value: Any) -> tuple[float, float]:
-    """One pitch for both directions, or one for x and one for y."""
+def convert_pitch(value: Any) -> tuple[float, float]:
+    """Return one pitch for both directions, or one for x and one for y."""
     numbers = tuple(value) if isinstance(value, Iterable) and not isinstance(value, str) else (value, value)
     if len(numbers) != 2:
         raise InputError(f"pitch {value} is not one number or two: give one pitch, or X,Y.")
-    return real(numbers[0], "pitch"), real(numbers[1], "pitch")
+    return convert_real(numbers[0], "pitch"), convert_real(numbers[1], "pitch")
 
 
-def whole(value: Any, name: str = "a count") -> Any:
-    """A whole number as an int; None and other numbers as they are, to be looked at later."""
-    return int(value) if value is not None and isfinite(real(value, name)) and value == int(value) else value
+def convert_whole_number(value: Any, name: str = "a count") -> Any:
+    """Return a whole number as an int; None and other numbers as they are, to be looked at later."""
+    return (
+        int(value)
+        if value is not None and isfinite(convert_real(value, name)) and value == int(value)
+        else value
+    )
 
 
-def optional_length(value: float | None, name: str = "a length") -> float:
-    """A length, or NaN (which the vise resolves) for None."""
-    return nan if value is None else inf if isnan(real(value, name)) else real(value)
+def convert_optional_length(value: float | None, name: str = "a length") -> float:
+    """Return a length, or NaN (which the vise resolves) for None."""
+    return nan if value is None else inf if isnan(convert_real(value, name)) else convert_real(value)
 
 
 def refuse_lattice(
     pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
 ) -> None:
-    """Refuses a lattice that cannot be, and pegs too fat for neighbouring holes.
+    """Refuse a lattice that cannot be, and pegs too fat for neighbouring holes.
 
     ``noun`` and ``peg`` are what the lattice and what stands in its holes are called.
     """
@@ -83,7 +87,7 @@ def refuse_lattice(
 
 
 def refuse_many_holes(columns: int | None, rows: int | None, noun: str) -> None:
-    """Refuses more holes than can be looked through."""
+    """Refuse more holes than can be looked through."""
     holes = (columns or 1) * (rows or 1)
     if holes > MOST_HOLES:
         raise InputError(
@@ -102,68 +106,68 @@ BOUNDS = {
 }
 
 
-def made_from_table(kind: Kind) -> Kind:
-    """Makes a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
+def make_class_from_table(kind: Kind) -> Kind:
+    """Make a frozen attrs class of a kind, whose annotations name the fields, from the table of its fields.
 
     Raises KeyError for an annotation without a row.
     """
     rows = {row.name: row for row in kind.table.fields}
     names = [name for name, form in kind.__annotations__.items() if not str(form).startswith("ClassVar")]
     inherits = kind.__base__ is not Toolkit
-    these = {name: attribute_of(rows[name], inherits=inherits) for name in names}
+    these = {name: make_field_attribute(rows[name], inherits=inherits) for name in names}
     for name in () if inherits else HARDWARE:
-        these[name] = field(default=None, converter=partial(hardware_of, name), kw_only=True)
+        these[name] = field(default=None, converter=partial(convert_hardware, name), kw_only=True)
     if not inherits:
         # What is known of the pegs makes no other toolkit.
         these["tolerance"] = field(default=None, kw_only=True, eq=False, repr=False)
     return frozen(these=these)(kind)
 
 
-def attribute_of(row: ToolkitField, *, inherits: bool) -> Any:
-    """Returns the attribute of a field; what is needed beside inherited fields is given by name alone."""
+def make_field_attribute(row: ToolkitField, *, inherits: bool) -> Any:
+    """Return the attribute of a field; what is needed beside inherited fields is given by name alone."""
     by_name = row.form in SILENT or inherits
     default = NOTHING if row.is_required else row.default
-    return field(default=default, converter=converter_of(row), kw_only=by_name)
+    return field(default=default, converter=choose_converter(row), kw_only=by_name)
 
 
-def converter_of(row: ToolkitField) -> Callable[[Any], Any]:
-    """Returns the converter of a field's values; values that cannot be are refused when all are known."""
+def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
+    """Return the converter of a field's values; values that cannot be are refused when all are known."""
     match row.form:
         case "length" if row.follows:
-            return partial(optional_length, name=row.words)
+            return partial(convert_optional_length, name=row.words)
         case "length":
-            number = partial(real, name=row.words)
+            number = partial(convert_real, name=row.words)
             return number if row.is_required or row.default is not None else optional(number)
         case "count":
-            return partial(whole, name=row.words)
+            return partial(convert_whole_number, name=row.words)
         case "force":
-            number = partial(real, name=row.words)
+            number = partial(convert_real, name=row.words)
             return number if row.is_required else optional(number)
         case "choice":
-            return row.checked
+            return row.check_value
         case "holes":
-            return partial(all_holes, carriers=row.carriers, noun=row.carrier_noun)
+            return partial(convert_holes, carriers=row.carriers, noun=row.carrier_noun)
         case form:
             return CONVERTERS[form]
 
 
-def all_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: str) -> tuple[Holes, ...]:
-    """Returns holes as a tuple, where they may be given by name."""
-    return tuple(holes_named(one, carriers, noun) if isinstance(one, str) else one for one in holes)
+def convert_holes(holes: Iterable[Holes | str], *, carriers: tuple[str, ...], noun: str) -> tuple[Holes, ...]:
+    """Return holes as a tuple, where they may be given by name."""
+    return tuple(parse_hole_name(one, carriers, noun) if isinstance(one, str) else one for one in holes)
 
 
-def two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, float] | None:
-    """Returns two lengths, or None; refuses anything else with ``wrong``, where "{value}" stands for it."""
+def convert_two_lengths(value: Iterable[float] | None, *, wrong: str) -> tuple[float, float] | None:
+    """Return two lengths, or None; refuse anything else with ``wrong``, where "{value}" stands for it."""
     if value is None:
         return None
     numbers = tuple(value) if isinstance(value, Iterable) else (value,)
     if len(numbers) != 2:
         raise InputError(wrong.format(value=value))
-    return real(numbers[0]), real(numbers[1])
+    return convert_real(numbers[0]), convert_real(numbers[1])
 
 
-def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
-    """Returns directions, or pairs of them, in the order of ``DIRECTIONS``; none for None.
+def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
+    """Return directions, or pairs of them, in the order of ``DIRECTIONS``; none for None.
 
     Refuses anything else.
     """
@@ -189,38 +193,38 @@ def direction_names(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
 
 
 def refuse_direction(name: Any) -> None:
-    """Refuses what is no direction of a clamp."""
+    """Refuse what is no direction of a clamp."""
     if not isinstance(name, str) or name not in DIRECTIONS:
         raise InputError(
             f"a clamp cannot move in the direction {name!r}: choose among {', '.join(DIRECTIONS)}."
         )
 
 
-def several_lengths(value: float | Iterable[float] | None) -> tuple[float, ...]:
-    """Returns lengths, each once, by size; none for None."""
+def convert_lengths(value: float | Iterable[float] | None) -> tuple[float, ...]:
+    """Return lengths, each once, by size; none for None."""
     given = () if value is None else value if isinstance(value, Iterable) else (value,)
-    return tuple(sorted({real(one, "a length") for one in given}))
+    return tuple(sorted({convert_real(one, "a length") for one in given}))
 
 
 CONVERTERS: dict[str, Callable[[Any], Any]] = {
-    "pitch": pair,
+    "pitch": convert_pitch,
     "span": partial(
-        two_lengths,
+        convert_two_lengths,
         wrong="travel {value} is not two lengths: give the least and the most stroke of the clamp, in mm.",
     ),
-    "flat": flat_of,
+    "flat": convert_flat,
     "heights": partial(
-        two_lengths,
+        convert_two_lengths,
         wrong="heights {value} are not two lengths: give the lower and the upper end of the part that "
         "touches, in mm.",
     ),
-    "directions": direction_names,
-    "lengths": several_lengths,
+    "directions": convert_directions,
+    "lengths": convert_lengths,
 }
 
 
 def settle(toolkit: Any, *, noun: str, peg: str) -> None:
-    """Puts in what follows from other fields, and refuses values that cannot be.
+    """Put in what follows from other fields, and refuse values that cannot be.
 
     The toolkit's fields are converted; values that follow from others are put into it. ``noun`` and ``peg``
     are what a lattice of it and what stands in its holes are called.
@@ -229,7 +233,7 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
     for row in rows:
         value = getattr(toolkit, row.name)
         if row.form == "length" and row.follows and isnan(value):
-            object.__setattr__(toolkit, row.name, toolkit.followed(row))
+            object.__setattr__(toolkit, row.name, toolkit.find_followed_length(row))
         if row.form == "count" and row.allowed and value not in row.allowed:
             few = " or ".join(map(str, row.allowed))
             raise InputError(f"{row.words} {value} cannot be: a {toolkit.noun} has {few}.")
@@ -242,13 +246,13 @@ def settle(toolkit: Any, *, noun: str, peg: str) -> None:
 
 
 def refuse_all_out_of_bounds(toolkit: Any) -> None:
-    """Refuses values of any field that are below what they must be at least, or too large to reckon with."""
+    """Refuse values of any field that are below what they must be at least, or too large to reckon with."""
     for row in toolkit.table.fields:
         refuse_out_of_bounds(toolkit, row)
 
 
 def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
-    """Refuses a value below what it must be at least, or too large to reckon with."""
+    """Refuse a value below what it must be at least, or too large to reckon with."""
     value = getattr(toolkit, row.name)
     match row.form:
         case "length" if value is not None:
@@ -288,11 +292,11 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
         case "pitch":
             refuse_long(row.words, max(value))
         case "flat":
-            object.__setattr__(toolkit, row.name, resolved_flat(value, toolkit.peg_radius))
+            object.__setattr__(toolkit, row.name, resolve_flat(value, toolkit.peg_radius))
 
 
 def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
-    """Refuses blocked holes that there are not, too many of them, and a carrier without a free hole."""
+    """Refuse blocked holes that there are not, too many of them, and a carrier without a free hole."""
     blocked, columns, rows, noun = getattr(toolkit, row.name), toolkit.columns, toolkit.rows, row.carrier_noun
     if len(blocked) > MOST_BLOCKED:
         raise InputError(
@@ -312,8 +316,8 @@ def refuse_blocked(toolkit: Any, row: ToolkitField) -> None:
             raise InputError(f"every column of the {carrier} {noun} is blocked: leave at least one.")
 
 
-def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
-    """A carrier with the pitch, counts of holes, peg radius, flat and blocked holes of a toolkit.
+def make_lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
+    """Return a carrier with the pitch, counts of holes, peg radius, flat and blocked holes of a toolkit.
 
     ``others`` is what else it has, or has instead.
     """
@@ -323,14 +327,14 @@ def lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
     return evolve(Carrier(name, *size, flat=toolkit.flat, blocked=blocked), **others)
 
 
-def wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Carrier:
-    """The straight wall of a toolkit, along x at y = 0; its width in mm is None where it is endless."""
+def make_wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Carrier:
+    """Return the straight wall of a toolkit, along x at y = 0; its width in mm is None where it is endless."""
     size, heights = (toolkit.pitch, toolkit.columns, toolkit.rows), toolkit.wall_heights
     return Carrier(WALL, *size, 0.0, 0.0, noun=noun, peg="end", is_wall=True, heights=heights, width=width)
 
 
-def finer(toolkit: Any) -> Iterator[Change]:
-    """Yields half the pitch as a change to try, where pegs are thin enough; every hole stays where it is."""
+def suggest_half_pitch(toolkit: Any) -> Iterator[Change]:
+    """Yield half the pitch as a change to try, where pegs are thin enough; every hole stays where it is."""
     if min(toolkit.pitch) >= 4 * toolkit.peg_radius:
         counts = {name: getattr(toolkit, name) for name in ("columns", "rows")}
         more = {name: 2 * count - 1 for name, count in counts.items() if count is not None}

@@ -16,9 +16,9 @@ from attrs import evolve, field, frozen
 
 from workhold.errors import InputError
 from workhold.geometry.segment import Arc, Line, Point, Segment
-from workhold.limits import real
+from workhold.limits import convert_real
 
-__all__ = ["Flat", "flat_of", "peg_outline", "resolved_flat", "standoff"]
+__all__ = ["Flat", "convert_flat", "make_peg_outline", "resolve_flat", "compute_standoff"]
 
 # Parts of the peg radius; a width that was rounded when it was written down is one still.
 ROUNDED = 1e-6
@@ -34,16 +34,16 @@ class Flat:
     half_width : of the flat in mm; NaN means all that there is at this distance.
     """
 
-    distance: float = field(converter=real)
-    half_width: float = field(default=nan, converter=real)
+    distance: float = field(converter=convert_real)
+    half_width: float = field(default=nan, converter=convert_real)
 
 
-def flat_of(value: Any) -> Flat | None:
-    """A flat from what stands for it: its distance, that and half its width, or a mapping of both.
+def convert_flat(value: Any) -> Flat | None:
+    """Return a flat from what stands for it: its distance, that and half its width, or a mapping of both.
 
     Examples
     --------
-    >>> flat_of({"distance": 2.0, "half_width": 1.5}) == flat_of((2.0, 1.5))
+    >>> convert_flat({"distance": 2.0, "half_width": 1.5}) == convert_flat((2.0, 1.5))
     True
     """
     if value is None or isinstance(value, Flat):
@@ -60,8 +60,8 @@ def flat_of(value: Any) -> Flat | None:
     return Flat(*numbers)
 
 
-def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
-    """A flat on a peg of a radius in mm, as wide as it is; refuses one that such a peg cannot have."""
+def resolve_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
+    """Return a flat on a peg of a radius in mm, as wide as it is; refuse one that such a peg cannot have."""
     if flat is None:
         return None
     if not (isfinite(flat.distance) and 0 <= flat.distance <= peg_radius):
@@ -81,15 +81,15 @@ def resolved_flat(flat: Flat | None, peg_radius: float) -> Flat | None:
     return evolve(flat, half_width=half_width)
 
 
-def standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
-    """Distance in mm from a face to the centre of a peg that touches it."""
+def compute_standoff(peg_radius: float, flat: Flat | None, face: Segment) -> float:
+    """Return the distance in mm from a face to the centre of a peg that touches it."""
     return flat.distance if flat is not None and isinstance(face, Line) else peg_radius
 
 
-def peg_outline(
+def make_peg_outline(
     center: Point, radius: float, flat: Flat | None = None, flat_deg: float | None = None
 ) -> list[Segment]:
-    """The outline of a peg in mm, counter-clockwise: a circle, cut off by the flat if there is one.
+    """Return the outline of a peg in mm, counter-clockwise: a circle, cut off by the flat if there is one.
 
     The flat looks in the direction ``flat_deg`` in degrees.
     """

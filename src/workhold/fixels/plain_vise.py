@@ -11,7 +11,7 @@ from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Carrier, Heights
 from workhold.fixels.jaw_pair import JawPair
-from workhold.fixels.making import made_from_table, refuse_all_out_of_bounds
+from workhold.fixels.making import make_class_from_table, refuse_all_out_of_bounds
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
 from workhold.fixels.table import REQUIRED, FieldTable, PageLabel
 from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Travel, Wording
@@ -20,7 +20,7 @@ from workhold.units import Unit
 __all__ = ["PlainVise"]
 
 
-@made_from_table
+@make_class_from_table
 class PlainVise(Toolkit):
     """A vise with two flat, parallel jaws: the part stands on parallels and is held by friction.
 
@@ -60,7 +60,7 @@ class PlainVise(Toolkit):
         "plain vise",
         "A vise with two flat jaws",
         (
-            fields.JAW_WIDTH.shown(
+            fields.JAW_WIDTH.relabel(
                 PageLabel("Width of the jaws", is_usual=True),
                 help="How wide the flat jaws are.",
                 default=REQUIRED,
@@ -69,7 +69,7 @@ class PlainVise(Toolkit):
                 missing="width of its jaws",
             ),
             fields.JAW_HEIGHT,
-            fields.MAX_OPENING.shown(
+            fields.MAX_OPENING.relabel(
                 PageLabel("Largest opening", "no limit", is_usual=True), at_least="", below=""
             ),
             fields.PARALLELS,
@@ -192,8 +192,8 @@ class PlainVise(Toolkit):
     def heights(self) -> dict[str, Heights]:
         """The heights up to which the jaws reach, above the part's lower side, for each height of parallels."""
         jaws = self.flat_jaws
-        tops = {one: jaws.top(one) for one in jaws.parallels}
-        return {jaws.role(one): (0.0, top) for one, top in tops.items() if 0.0 < top < inf}
+        tops = {one: jaws.compute_top(one) for one in jaws.parallels}
+        return {jaws.name_outline_role(one): (0.0, top) for one, top in tops.items() if 0.0 < top < inf}
 
     @property
     def datum(self) -> Datum:
@@ -217,9 +217,9 @@ class PlainVise(Toolkit):
         eighths, halves = self.jaw_width / 3.175, self.jaw_width / 0.5
         return abs(eighths - round(eighths)) < 1e-9 < abs(halves - round(halves))
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """The part on the bed, and lower parallels."""
+    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Yield the part on the bed, and lower parallels."""
         if self.parallels:
             yield Change("without parallels, on the bed", {fields.PARALLELS.name: ()})
             lower = min(self.parallels) / 2
-            yield Change(f"on parallels of {unit.text(lower)}", {fields.PARALLELS.name: (lower,)})
+            yield Change(f"on parallels of {unit.format_length(lower)}", {fields.PARALLELS.name: (lower,)})

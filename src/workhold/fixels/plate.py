@@ -16,7 +16,7 @@ from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle
+from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle, suggest_half_pitch
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
@@ -30,7 +30,7 @@ __all__ = ["Plate"]
 TURNED = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
-@made_from_table
+@make_class_from_table
 class Plate(Toolkit):
     """A plate with a lattice of holes: three locators in any of them, and clamps along rows and columns.
 
@@ -149,15 +149,15 @@ class Plate(Toolkit):
 
     def __attrs_post_init__(self) -> None:
         settle(self, noun=self.noun, peg="locator")
-        object.__setattr__(self, "directions", self.asked_directions())
+        object.__setattr__(self, "directions", self.list_asked_directions())
 
     @property
     def is_paired(self) -> bool:
         """Whether two clamps are needed together."""
         return self.clamps == 2
 
-    def asked_directions(self) -> tuple[Any, ...]:
-        """The directions, or pairs of them, that are meant.
+    def list_asked_directions(self) -> tuple[Any, ...]:
+        """Return the directions, or pairs of them, that are meant.
 
         Raises
         ------
@@ -176,7 +176,7 @@ class Plate(Toolkit):
     @property
     def usual_directions(self) -> tuple[Any, ...]:
         """All directions, or pairs square to each other, that differ by more than a turn of the plate."""
-        holes = lattice_carrier(self, "plate")
+        holes = make_lattice_carrier(self, "plate")
         is_square = holes.pitch[0] == holes.pitch[1] and holes.columns == holes.rows
         every = (("-x", "-y"), ("-x", "+y")) if self.is_paired else ("-x", "-y")
         return every[:1] if is_square else every
@@ -212,16 +212,16 @@ class Plate(Toolkit):
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate, and for each direction the clamp, whose travel grows as it opens."""
-        return self.plate_and_clamps((0.0, 0.0))
+        return self.make_plate_and_clamps((0.0, 0.0))
 
-    def plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
-        """The plate with its first hole at a place in mm, and the clamp of each direction."""
-        plate = lattice_carrier(
+    def make_plate_and_clamps(self, offset: tuple[float, float]) -> tuple[Carrier, ...]:
+        """Return the plate with its first hole at a place in mm, and the clamp of each direction."""
+        plate = make_lattice_carrier(
             self, "plate", offset=offset, noun="plate", peg="locator", heights=self.locator_heights
         )
         least, most = (-inf, None) if self.travel is None else (-self.travel[1], -self.travel[0])
         clamps = (
-            lattice_carrier(
+            make_lattice_carrier(
                 self,
                 f"clamp {name}",
                 peg_radius=self.clamp_radius,
@@ -258,8 +258,8 @@ class Plate(Toolkit):
         ahead = [TURNED[name] for name in names]
         return (0, *(1 + names.index(name) if name in names else -1 for name in ahead))
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """The clamp along rows and columns, and half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Yield the clamp along rows and columns, and half the pitch."""
         if self.is_paired:
             yield Change("with one clamp", {fields.CLAMPS.name: 1, fields.DIRECTION.name: None})
             if len(self.pushes) == 1:
@@ -273,4 +273,4 @@ class Plate(Toolkit):
                 yield Change(
                     "with the clamp along the columns as well", {fields.DIRECTION.name: ("-x", "-y")}
                 )
-        yield from finer(self)
+        yield from suggest_half_pitch(self)

@@ -10,7 +10,7 @@ from typing import Any
 
 from attrs import frozen
 
-from workhold.fixels.carrier import Carrier, column_letters, hole_name
+from workhold.fixels.carrier import Carrier, make_column_letters, make_hole_name
 
 __all__ = ["Datum", "PageWords", "SetupWords"]
 
@@ -87,8 +87,8 @@ class Datum:
     edge: float | None = None
 
     @classmethod
-    def at_hole(cls, plate: Carrier) -> Datum:
-        name, hole = hole_name(plate.name, 0, 0), f"hole {hole_name(plate.name, 0, 0)}"
+    def from_hole(cls, plate: Carrier) -> Datum:
+        name, hole = make_hole_name(plate.name, 0, 0), f"hole {make_hole_name(plate.name, 0, 0)}"
         return cls(
             name=name,
             point=f"the centre of {hole}",
@@ -96,15 +96,15 @@ class Datum:
             mark=f"{name} (0, 0)",
             x=hole,
             y=hole,
-            lines=(f"column {column_letters(0)}", "row 1"),
+            lines=(f"column {make_column_letters(0)}", "row 1"),
             rows_from="below",
             substitute=f"the hole that takes the place of {name}",
         )
 
     @classmethod
-    def at_wall(cls, wall: Carrier, plate: Carrier) -> Datum:
-        """Where the first column of a plate meets a wall, whose line counts as a row."""
-        letter, line = column_letters(0), f"the {wall.noun}"
+    def from_wall(cls, wall: Carrier, plate: Carrier) -> Datum:
+        """Return where the first column of a plate meets a wall, whose line counts as a row."""
+        letter, line = make_column_letters(0), f"the {wall.noun}"
         name = f"column {letter} at {line}"
         return cls(
             name=name,
@@ -134,8 +134,8 @@ class Datum:
         """What x and y are measured from, in one phrase."""
         return self.x if self.is_hole else f"{self.x} and {self.y}"
 
-    def centres(self, pegs: str) -> str:
-        """What x and y of pegs of a name are, a sentence."""
+    def describe_peg_centres(self, pegs: str) -> str:
+        """Return what x and y of pegs of a name are, a sentence."""
         if self.is_hole:
             return f"x, y: {pegs} centre, from {self.point}."
         return f"x from {self.x}, y from {self.y}, to centres."

@@ -15,7 +15,7 @@ from attrs.converters import optional
 
 from workhold.errors import InputError
 from workhold.fixels.table import FieldTable, PageLabel, ToolkitField
-from workhold.limits import real, refuse_long
+from workhold.limits import convert_real, refuse_long
 
 __all__ = [
     "CLAMP",
@@ -27,7 +27,7 @@ __all__ = [
     "PinLimits",
     "SupportPads",
     "TopClamp",
-    "hardware_of",
+    "convert_hardware",
 ]
 
 # What the tables are called in a toolkit's file, and in all that the program writes.
@@ -42,7 +42,7 @@ USUAL = "usual"
 SUPPORTS_SECTION, CLAMP_SECTION = "Supports", "The clamp on top"
 
 
-def length_row(
+def make_length_field(
     name: str, least: Any, figure: str, label: str, typed: str = "", section: str | None = None
 ) -> ToolkitField:
     labels, help = (PageLabel(label, USUAL),), f"{figure[:1].upper()}{figure[1:]}."
@@ -51,16 +51,16 @@ def length_row(
     )
 
 
-def rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
-    """Rings as tuples of numbers, or None."""
-    return None if values is None else tuple(tuple(real(one) for one in ring) for ring in values)
+def convert_rings(values: Iterable[Iterable[Any]] | None) -> Rings | None:
+    """Return the rings as tuples of numbers, or None."""
+    return None if values is None else tuple(tuple(convert_real(one) for one in ring) for ring in values)
 
 
 PADS = FieldTable(
     SUPPORTS,
     "Supports under the part",
     (
-        length_row(
+        make_length_field(
             "pad_radius",
             "0",
             "radius of the supports' pads",
@@ -69,7 +69,7 @@ PADS = FieldTable(
             "the distance of the holes asks for less.",
             SUPPORTS_SECTION,
         ),
-        length_row(
+        make_length_field(
             "pad_margin",
             "0",
             "from a pad to the border of the face below",
@@ -77,14 +77,14 @@ PADS = FieldTable(
             "Least distance of a pad from the border of the face below; the toolkit's, or 0mm, if not given.",
             SUPPORTS_SECTION,
         ),
-        length_row("height", "above 0", "height of the supports", "Height"),
+        make_length_field("height", "above 0", "height of the supports", "Height"),
     ),
 )
 CLAMP = FieldTable(
     TOP_CLAMP,
     "A clamp on top",
     (
-        length_row(
+        make_length_field(
             "tip_radius",
             "above 0",
             "radius of the tip of the clamp on top",
@@ -92,7 +92,7 @@ CLAMP = FieldTable(
             "Radius of the clamp's round tip; the toolkit's, or 5mm, if not given.",
             CLAMP_SECTION,
         ),
-        length_row(
+        make_length_field(
             "inside",
             "above 0",
             "from the clamp on top to the supports' triangle",
@@ -101,7 +101,7 @@ CLAMP = FieldTable(
             "given.",
             CLAMP_SECTION,
         ),
-        length_row(
+        make_length_field(
             "tip_margin",
             "0",
             "from the tip of the clamp on top to the border of its face",
@@ -109,7 +109,7 @@ CLAMP = FieldTable(
             "Least distance of the tip from the border of its face; the toolkit's, or 0mm, if not given.",
             CLAMP_SECTION,
         ),
-        length_row(
+        make_length_field(
             "head_radius",
             "above 0",
             "radius of the head of the clamp on top",
@@ -140,7 +140,7 @@ LIMITS = FieldTable(
             (PageLabel("Bending stress", USUAL),),
             figure="largest bending stress of a pin",
         ),
-        length_row(
+        make_length_field(
             "movement_limit",
             "above 0",
             "farthest that pins may give way under the part",
@@ -151,7 +151,7 @@ LIMITS = FieldTable(
 
 
 def refuse_wrong(hardware: Hardware) -> None:
-    """Refuses lengths that cannot be."""
+    """Refuse lengths that cannot be."""
     for row in hardware.table.fields:
         value, words = getattr(hardware, row.name), f"{hardware.table.noun.replace('_', '-')}: {row.words}"
         if row.form in ("length", "stress") and value is not None:
@@ -193,9 +193,9 @@ class SupportPads:
 
     table: ClassVar[FieldTable] = PADS
 
-    pad_radius: float | None = field(default=None, converter=optional(real))
-    pad_margin: float | None = field(default=None, converter=optional(real))
-    height: float | None = field(default=None, converter=optional(real))
+    pad_radius: float | None = field(default=None, converter=optional(convert_real))
+    pad_margin: float | None = field(default=None, converter=optional(convert_real))
+    height: float | None = field(default=None, converter=optional(convert_real))
 
     def __attrs_post_init__(self) -> None:
         refuse_wrong(self)
@@ -221,11 +221,11 @@ class TopClamp:
 
     table: ClassVar[FieldTable] = CLAMP
 
-    tip_radius: float | None = field(default=None, converter=optional(real))
-    inside: float | None = field(default=None, converter=optional(real))
-    reach: Rings | None = field(default=None, converter=rings)
-    tip_margin: float | None = field(default=None, converter=optional(real))
-    head_radius: float | None = field(default=None, converter=optional(real))
+    tip_radius: float | None = field(default=None, converter=optional(convert_real))
+    inside: float | None = field(default=None, converter=optional(convert_real))
+    reach: Rings | None = field(default=None, converter=convert_rings)
+    tip_margin: float | None = field(default=None, converter=optional(convert_real))
+    head_radius: float | None = field(default=None, converter=optional(convert_real))
 
     def __attrs_post_init__(self) -> None:
         refuse_wrong(self)
@@ -248,8 +248,8 @@ class PinLimits:
 
     table: ClassVar[FieldTable] = LIMITS
 
-    stress_limit: float | None = field(default=None, converter=optional(real))
-    movement_limit: float | None = field(default=None, converter=optional(real))
+    stress_limit: float | None = field(default=None, converter=optional(convert_real))
+    movement_limit: float | None = field(default=None, converter=optional(convert_real))
 
     def __attrs_post_init__(self) -> None:
         refuse_wrong(self)
@@ -260,8 +260,8 @@ Hardware: TypeAlias = SupportPads | TopClamp | PinLimits
 HARDWARE: Mapping[str, type[Hardware]] = {SUPPORTS: SupportPads, TOP_CLAMP: TopClamp, PINS: PinLimits}
 
 
-def hardware_of(name: str, value: Any) -> Hardware | None:
-    """Supports, the clamp or limits of pins from a mapping of their figures.
+def convert_hardware(name: str, value: Any) -> Hardware | None:
+    """Return the supports, the clamp or limits of pins from a mapping of their figures.
 
     Parameters
     ----------
@@ -274,7 +274,7 @@ def hardware_of(name: str, value: Any) -> Hardware | None:
 
     Examples
     --------
-    >>> hardware_of("supports", {"height": 8}).height
+    >>> convert_hardware("supports", {"height": 8}).height
     8.0
     """
     kind = HARDWARE[name]

@@ -88,8 +88,8 @@ class ToolkitField(Declaration):
     carrier_noun: str = field(default="", kw_only=True)
     section: str | None = field(default=TOOLKIT_SECTION, kw_only=True)
 
-    def shown(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
-        """Returns the field of another kind of toolkit, with other labels on the page and further changes."""
+    def relabel(self, *labels: PageLabel, **changes: Any) -> ToolkitField:
+        """Return the field of another kind of toolkit, with other labels on the page and further changes."""
         return evolve(self, labels=labels, **changes)
 
 

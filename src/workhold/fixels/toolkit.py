@@ -99,7 +99,7 @@ class Limit:
 
 
 def is_whole(number: float) -> bool:
-    """Whether a number is a whole one but for rounding."""
+    """Return whether a number is a whole one but for rounding."""
     return abs(number - round(number)) < 1e-9
 
 
@@ -164,7 +164,7 @@ class Toolkit:
     @property
     def datum(self) -> Datum:
         """Where zero lies, and what places are measured from: the first hole of the first plate."""
-        return Datum.at_hole(self.plates[0])
+        return Datum.from_hole(self.plates[0])
 
     @property
     def plates(self) -> tuple[Carrier, ...]:
@@ -260,24 +260,24 @@ class Toolkit:
         """The limits that it has and could do without."""
         limits = []
         for row in self.table.fields:
-            free = self.followed(row) if row.follows else row.default
+            free = self.find_followed_length(row) if row.follows else row.default
             if row.lifted is not None and getattr(self, row.name) != free:
                 change = Change(row.lifted.words, {row.name: free})
                 limits.append(Limit(row.lifted.rule, row.lifted.bounds, change))
         return tuple(sorted(limits, key=lambda limit: LIFTED.index(limit.bounds)))
 
-    def followed(self, row: ToolkitField) -> float:
-        """The length in mm that stands for one that is not given; of a pitch that in x."""
+    def find_followed_length(self, row: ToolkitField) -> float:
+        """Return the length in mm that stands for one that is not given; of a pitch that in x."""
         value = getattr(self, row.follows)
         return float(value[0] if isinstance(value, tuple) else value)
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """Changes to try where it holds nothing, besides lifting its limits; their words use ``unit``."""
+    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Yield the changes to try where it holds nothing, besides lifting its limits; their words use ``unit``."""
         yield from ()
 
     @classmethod
     def preset(cls, name: str, **changes: Any) -> Self:
-        """A toolkit that people own, by name.
+        """Return a toolkit that people own, by name.
 
         Parameters
         ----------
@@ -295,11 +295,11 @@ class Toolkit:
         >>> Vise.preset("plate-20mm", columns=2).pitch, Plate.preset("clamp-plate-20mm").clamp_radius
         ((20.0, 20.0), 5.0)
         """
-        from workhold.files.toolkit_file import preset_fields, preset_tolerance
+        from workhold.files.toolkit_file import load_preset_fields, load_preset_tolerance
 
-        given = {**preset_fields(cls, name), **changes}
+        given = {**load_preset_fields(cls, name), **changes}
         if PEG_RADIUS not in changes:
-            given.setdefault("tolerance", preset_tolerance(name))
+            given.setdefault("tolerance", load_preset_tolerance(name))
         try:
             return cls(**given)
         except TypeError as error:
@@ -307,7 +307,7 @@ class Toolkit:
 
     @classmethod
     def presets(cls) -> tuple[str, ...]:
-        """The names of the presets of this class.
+        """Return the names of the presets of this class.
 
         Examples
         --------
@@ -315,9 +315,9 @@ class Toolkit:
         >>> Fence.presets()
         ('fence-20mm',)
         """
-        from workhold.files.toolkit_file import preset_names_of
+        from workhold.files.toolkit_file import list_presets_of_kind
 
-        return preset_names_of(cls)
+        return list_presets_of_kind(cls)
 
     def changed(self, fields: Mapping[str, Any]) -> Self:
         # Other pegs are as good as nobody says.
@@ -348,12 +348,12 @@ class Toolkit:
         assert travel is not None
         return travel.unit
 
-    def arrangement(self, name: str, direction: str | None = None) -> Arrangement:
-        """The arrangement of a name, and of a direction where several have the name."""
+    def find_arrangement(self, name: str, direction: str | None = None) -> Arrangement:
+        """Return the arrangement of a name, and of a direction where several have the name."""
         return next(a for a in self.arrangements if a.name == name and direction in (None, a.direction))
 
-    def arrangements_counted(self, arrangement: NDArray[Any]) -> dict[str, int]:
-        """How many fixtures there are of each arrangement, from the indices (N,) of theirs."""
+    def count_arrangements(self, arrangement: NDArray[Any]) -> dict[str, int]:
+        """Return how many fixtures there are of each arrangement, from the indices (N,) of theirs."""
         counts = dict.fromkeys(self.types, 0)
         for one, count in zip(
             self.arrangements, np.bincount(arrangement, minlength=1).tolist(), strict=False
@@ -361,32 +361,32 @@ class Toolkit:
             counts[one.name] += count
         return counts
 
-    def peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
-        """The carrier (N, K) of each peg of N fixtures, from the indices (N,) of their arrangements."""
+    def find_peg_carriers(self, arrangement: NDArray[Any]) -> NDArray[np.int8]:
+        """Return the carrier (N, K) of each peg of N fixtures, from the indices (N,) of their arrangements."""
         return np.array([one.carriers for one in self.arrangements], np.int8).take(arrangement, axis=0)
 
-    def carrier(self, name: str) -> Carrier:
+    def find_carrier(self, name: str) -> Carrier:
         return next(carrier for carrier in self.carriers if carrier.name == name)
 
-    def carrier_numbers(self, names: Iterable[str]) -> list[int]:
+    def find_carrier_numbers(self, names: Iterable[str]) -> list[int]:
         known = [carrier.name for carrier in self.carriers]
         return [known.index(name) for name in names]
 
-    def arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
-        """The indices (N,) of the arrangements with so many pegs (N,) on the carrier that stands still."""
+    def find_arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
+        """Return the indices (N,) of the arrangements with so many pegs (N,) on the carrier that stands still."""
         pegs = [one.pegs[0] for one in self.arrangements]
         return np.asarray(
             np.array([pegs.index(k) if k in pegs else -1 for k in range(max(pegs) + 1)])[standing]
         )
 
-    def places(
+    def compute_hole_places(
         self,
         arrangement: NDArray[Any],
         column: NDArray[Any],
         row: NDArray[Any],
         travelled: NDArray[np.float64],
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """x and y (N, K) in mm of the holes of N fixtures.
+        """Return x and y (N, K) in mm of the holes of N fixtures.
 
         Parameters
         ----------
@@ -408,7 +408,7 @@ class Toolkit:
         carriers = np.array([one.carriers for one in self.arrangements], np.int64)
 
         def of_pegs(values: NDArray[np.float64]) -> NDArray[np.float64]:
-            """Numbers (C,) of carriers for each peg (N, K)."""
+            """Return the numbers (C,) of carriers for each peg (N, K)."""
             return np.asarray(values[carriers].take(arrangement, axis=0))
 
         x, y = (

@@ -10,7 +10,7 @@ from attrs import evolve
 
 from workhold.fixels import fields
 from workhold.fixels.carrier import Heights, Holes
-from workhold.fixels.making import lattice_carrier, made_from_table, settle
+from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle
 from workhold.fixels.pegs import Flat
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.table import FieldTable
@@ -20,7 +20,7 @@ from workhold.units import Unit
 __all__ = ["OpeningVise", "Vise"]
 
 
-@made_from_table
+@make_class_from_table
 class Vise(Toolkit):
     """Two jaws, the left one fixed, the right one sliding along x, each with a lattice of holes.
 
@@ -149,8 +149,8 @@ class Vise(Toolkit):
     def jaws(self) -> tuple[Carrier, ...]:
         """The left jaw, and the right jaw, whose travel is the jaw separation."""
         both = {"body_radius": self.body_radius, "noun": "jaw"}
-        left = lattice_carrier(self, "left", **both, heights=self.left_heights)
-        right = lattice_carrier(
+        left = make_lattice_carrier(self, "left", **both, heights=self.left_heights)
+        right = make_lattice_carrier(
             self,
             "right",
             **both,
@@ -165,11 +165,11 @@ class Vise(Toolkit):
         """The smallest gap in mm."""
         return self.min_gap
 
-    def further_changes(self, unit: Unit) -> Iterator[Change]:
-        """A smaller gap, a column more, rows offset and half the pitch."""
+    def list_further_changes(self, unit: Unit) -> Iterator[Change]:
+        """Yield a smaller gap, a column more, rows offset and half the pitch."""
         jaw, _ = self.carriers
         narrow, offset = 2 * jaw.peg_radius, jaw.pitch[1] / 2
-        words = [f"{unit.figure(length)} {unit.abbreviation}" for length in (narrow, offset)]
+        words = [f"{unit.format_short_length(length)} {unit.abbreviation}" for length in (narrow, offset)]
         if self.min_gap > narrow > 0:
             yield Change(f"with a smallest gap of {words[0]}", {fields.MIN_GAP.name: narrow})
         yield Change("with one more column on each jaw", {fields.COLUMNS.name: self.columns + 1})
@@ -187,7 +187,7 @@ class Vise(Toolkit):
             )
 
 
-@made_from_table
+@make_class_from_table
 class OpeningVise(Vise):
     """The vise that clamps by opening: its pegs hold the part from inside its holes, or around a waist.
 

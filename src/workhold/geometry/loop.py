@@ -41,7 +41,7 @@ from workhold.geometry.segment import (
     segment_rows,
 )
 from workhold.kernels.base.distance import turns_around
-from workhold.limits import MOST_COMPARED, MOST_LENGTH, MOST_RADIUS, real_array
+from workhold.limits import MOST_COMPARED, MOST_LENGTH, MOST_RADIUS, make_real_array
 
 __all__ = [
     "Comparisons",
@@ -151,7 +151,7 @@ def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.f
     """
     no_list = f"{loop} is not a list of [x, y, bulge] numbers: give three numbers for every vertex."
     try:
-        array = real_array(vertices, f"{loop}: a coordinate")
+        array = make_real_array(vertices, f"{loop}: a coordinate")
     except InputError:
         raise
     except (TypeError, ValueError, OverflowError) as error:

@@ -21,9 +21,9 @@ BoolArray = NDArray[np.bool_]
 
 
 def touch_all(table: FixtureTable, query: Query) -> BoolArray:
-    """Which fixtures (N,) touch each of the faces that they are to touch; a corner touches both of its faces."""
+    """Return which fixtures (N,) touch each of the faces that they are to touch; a corner touches both of its faces."""
     part, toolkit = query.workpiece, query.toolkit
-    wanted, good = faces_named(query.restrictions.touch, part), np.ones(len(table), np.bool_)
+    wanted, good = find_faces_named(query.restrictions.touch, part), np.ones(len(table), np.bool_)
     corners: list[set[int]] = [set()] * len(table)
     if wanted and toolkit.ends_on_walls and len(table):
         ends = wall_ends(part, toolkit, table.theta, table.position)
@@ -33,7 +33,7 @@ def touch_all(table: FixtureTable, query: Query) -> BoolArray:
     return good
 
 
-def faces_named(numbers: tuple[int, ...], workpiece: Workpiece) -> set[int]:
+def find_faces_named(numbers: tuple[int, ...], workpiece: Workpiece) -> set[int]:
     """Return the numbers of faces, each of which may be named by any of its segments."""
     return {face.number for face in workpiece.numbered.faces if not set(face.segments).isdisjoint(numbers)}
 

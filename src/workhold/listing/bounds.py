@@ -38,11 +38,11 @@ from workhold.kernels.contact.seats import (
     OFF,
     bounds_of_pairs,
 )
-from workhold.listing.canonical_form import Candidates, candidates_of
-from workhold.listing.clamp_placement import DIRECTION_NAMES, direction_number
+from workhold.listing.canonical_form import Candidates, make_candidates
+from workhold.listing.clamp_placement import DIRECTION_NAMES, find_direction_number
 from workhold.listing.contact_groups import PackedContacts
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP
-from workhold.listing.ranking import OrderKeys, best_possible, keys_of
+from workhold.listing.ranking import OrderKeys, make_best_possible_figures, make_order_keys
 from workhold.model.clamps import LOCATORS
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import (
@@ -60,7 +60,13 @@ from workhold.statics.contact_matrix import compute_outward_normals, invert_loca
 from workhold.statics.judging import Judging
 from workhold.statics.quality import main_direction, measure_faces
 
-__all__ = ["BOUNDED", "first_of_clamps", "pair_bounds", "preferred_angles", "tilted_keys"]
+__all__ = [
+    "BOUNDED",
+    "find_first_clamp_figure",
+    "bound_pairs",
+    "list_preferred_angles",
+    "bound_keys_when_tilted",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -74,20 +80,20 @@ SHARE, MOST_SHARE = 1e-6, 1e-2
 MANY = 1 << 20
 
 
-def first_of_clamps(query: Query) -> int | None:
-    """The place in a ranking of the first figure that pairs of clamps bound; None where there is none."""
+def find_first_clamp_figure(query: Query) -> int | None:
+    """Return the place in a ranking of the first figure that pairs of clamps bound; None where there is none."""
     keys = {FIGURES[number].key for number in BOUNDED}
     return next((place for place, key in enumerate(query.rank_by) if key in keys), None)
 
 
-def pair_bounds(
+def bound_pairs(
     order: IntArray,
     starts: IntArray,
     records: Sequence[PackedContacts],
     problems: Sequence[Problem],
     query: Query,
 ) -> Array:
-    """Bounds (S, 3) of the pairs of clamps at seats, see ``kernels.contact.seats``.
+    """Return the bounds (S, 3) of the pairs of clamps at seats, see ``kernels.contact.seats``.
 
     ``order`` (M,) are numbers of contacts, counted through all directions, seat by seat, and ``starts`` (S,)
     where each seat begins. Records and problems are those of each direction.
@@ -98,22 +104,22 @@ def pair_bounds(
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         there = np.flatnonzero((order >= edges[number]) & (order < edges[number + 1]))
         some = part.take(order[there] - edges[number])
-        forces[there] = clamp_forces(some, candidates_of(some, problem), problem)
-        directions[there] = direction_number(problem.toolkit)
+        forces[there] = clamp_forces(some, make_candidates(some, problem), problem)
+        directions[there] = find_direction_number(problem.toolkit)
     kept = np.flatnonzero(forces[:, OFF] >= 0.0)
     ends = np.searchsorted(seat[kept], np.arange(len(starts) + 1))
     asked = np.zeros((len(DIRECTION_NAMES), len(DIRECTION_NAMES)), np.int64)
     for arrangement in query.toolkit.arrangements:
         one, other = (arrangement.direction or "").split()
         asked[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = 1
-    out, place = np.empty((len(starts), BOUND_LENGTH)), first_of_clamps(query)
+    out, place = np.empty((len(starts), BOUND_LENGTH)), find_first_clamp_figure(query)
     wants_margin = place is not None and query.rank_by[place] == FIGURES[CLOSURE_MARGIN].key
     bounds_of_pairs(ends, directions[kept], forces[kept], asked, wants_margin, out, np.empty((2, LOCATORS)))
     return out
 
 
 def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
-    """Forces (N, 5) of contacts of three locators and a clamp, see ``kernels.contact.seats``.
+    """Return the forces (N, 5) of contacts of three locators and a clamp, see ``kernels.contact.seats``.
 
     Locators are in the order of their holes, whatever the direction of the clamp. Less than no doubt stands
     for a clamp that surely holds the part alone, and needs no other.
@@ -143,8 +149,9 @@ def clamp_forces(records: Array, c: Candidates, problem: Problem) -> Array:
 BESIDE = 1e-3
 
 
-def preferred_angles(query: Query) -> list[tuple[float, float]]:
-    """Ranges in degrees of the part's angle in which the order prefers it: square, as drawn or by quarters.
+def list_preferred_angles(query: Query) -> list[tuple[float, float]]:
+    """Return the ranges in degrees of the part's angle in which the order prefers it: square, as drawn or by
+    quarters.
 
     In the usual order these are quarters of a turn as written, else where the part's main direction is square.
     """
@@ -154,7 +161,7 @@ def preferred_angles(query: Query) -> list[tuple[float, float]]:
     return [(middle - beside, middle + beside) for middle in middles]
 
 
-def tilted_keys(query: Query, problem: Problem) -> OrderKeys | None:
+def bound_keys_when_tilted(query: Query, problem: Problem) -> OrderKeys | None:
     """Return the least keys, one row, that fixtures at other than the preferred angles can have.
 
     None where angles have no say, or nothing is bounded.
@@ -169,13 +176,13 @@ def tilted_keys(query: Query, problem: Problem) -> OrderKeys | None:
     if query.has_house_order:
         # Where the drawing lies aslant, other angles may be square.
         tilt = SQUARE_TILT if main_direction(part) == 0.0 else 0.0
-        return least_keys(query, problem, tilt)
-    tilted, square = (least_keys(query, problem, tilt) for tilt in (SQUARE_TILT, 0.0))
+        return bound_keys_of_tilt(query, problem, tilt)
+    tilted, square = (bound_keys_of_tilt(query, problem, tilt) for tilt in (SQUARE_TILT, 0.0))
     return None if (tilted.first == square.first).all() else tilted
 
 
-def shared_arcs(query: Query) -> list[int]:
-    """Numbers of the arcs that two pegs which fix the part may touch: pegs are a pitch or the gap apart."""
+def list_shared_arcs(query: Query) -> list[int]:
+    """Return the numbers of the arcs that two pegs which fix the part may touch: pegs are a pitch or the gap apart."""
     carriers, gap = query.toolkit.carriers, query.toolkit.gap
     least = min((*(min(one.pitch) for one in carriers if one.has_lattice), *(() if gap is None else (gap,))))
     radius = max(one.peg_radius for one in carriers)
@@ -190,23 +197,23 @@ def shared_arcs(query: Query) -> list[int]:
     return out
 
 
-def least_keys(query: Query, problem: Problem, tilt: float) -> OrderKeys:
-    """The least keys that fixtures of a tilt in degrees or more, at other than preferred angles, can have."""
+def bound_keys_of_tilt(query: Query, problem: Problem, tilt: float) -> OrderKeys:
+    """Return the least keys that fixtures of a tilt in degrees or more, at other than preferred angles, can have."""
     part, tolerance = query.workpiece, query.tolerance
     sizes, off = measure_faces(part), tolerance.peg + tolerance.face
-    arcs = shared_arcs(query)
+    arcs = list_shared_arcs(query)
     # Whether two pegs share an arc or not.
     cases = [(sqrt(2.0) * off, np.nanmax(sizes))]
     if arcs:
         cases.append((hypot(off, tolerance.peg), sizes[arcs].max()))
-    quality = best_possible(len(cases), query)
+    quality = make_best_possible_figures(len(cases), query)
     quality[:, LOCATION_ERROR], quality[:, SMALLEST_FACE] = np.transpose(cases)
     quality[:, LOCATION_ERROR] *= 1.0 - SHARE
     quality[:, TILT] = tilt
     quality[:, PENALTY] = Judging.of(problem.wrench_length, query.toolkit, tolerance).penalty(quality)
     aslant = next(factor.times for factor in FACTORS if factor.key == "other_angle")
     error = quality[:, LOCATION_ERROR] * aslant if query.has_house_order else None
-    keys = keys_of(quality, query, error, np.full(len(cases), 2))
+    keys = make_order_keys(quality, query, error, np.full(len(cases), 2))
     if keys.error is None:
         return keys.take(keys.order(None)[:1])
     # No one of them need have all that is least.

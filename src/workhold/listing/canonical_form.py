@@ -16,7 +16,7 @@ from workhold.geometry.segment import find_row_ends
 from workhold.kernels.contact import record
 from workhold.kernels.contact.record import WORK_LENGTH
 from workhold.kernels.proof.canonical_form import contacts_of, to_canonical_form
-from workhold.listing.runs import key_of, order_of
+from workhold.listing.runs import make_keys, order_of
 from workhold.proof.deciding import read_peg_integers
 
 __all__ = [
@@ -24,15 +24,15 @@ __all__ = [
     "Candidates",
     "Rows",
     "are_lowest",
-    "candidates_of",
-    "canonical_form",
-    "changes",
-    "clusters",
-    "listed_once",
-    "most_holes",
-    "on_each_face",
-    "packed",
-    "packed_holes",
+    "make_candidates",
+    "make_canonical",
+    "mark_changes",
+    "split_into_clusters",
+    "list_each_once",
+    "bound_holes",
+    "assign_contacts_to_faces",
+    "pack_integers",
+    "pack_holes",
     "place_number",
 ]
 
@@ -58,7 +58,7 @@ class Rows:
         return type(self)(*(getattr(self, one.name).take(indices, axis=0) for one in fields(type(self))))
 
     @classmethod
-    def joined(cls, parts: Sequence[Self]) -> Self:
+    def concatenate(cls, parts: Sequence[Self]) -> Self:
         """Return the rows of several, at least one."""
         return cls(*(np.concatenate([getattr(part, one.name) for part in parts]) for one in fields(cls)))
 
@@ -89,7 +89,7 @@ class Candidates(Rows):
     force: Array
 
 
-def candidates_of(records: Array, problem: Problem) -> Candidates:
+def make_candidates(records: Array, problem: Problem) -> Candidates:
     count = len(records)
     feature, column, row = read_peg_integers(records)
     point, gap, null, force = (np.empty((count, *shape)) for shape in ((4, 2), (), (4,), (4,)))
@@ -99,8 +99,8 @@ def candidates_of(records: Array, problem: Problem) -> Candidates:
     return Candidates(standing, feature, column, row, -records[:, record.PSI], point, gap, null, force)
 
 
-def canonical_form(c: Candidates, swapped: int) -> Candidates:
-    """Candidates in the one form each fixture is listed in, see ``kernels.proof.canonical_form``."""
+def make_canonical(c: Candidates, swapped: int) -> Candidates:
+    """Return the candidates in the one form each fixture is listed in, see ``kernels.proof.canonical_form``."""
     theta, column, row = c.theta.copy(), c.column.copy(), c.row.copy()
     order = np.empty((len(c.standing), 4), np.int64)
     to_canonical_form(c.standing, theta, column, row, order, swapped, SAME_POSE)
@@ -110,15 +110,16 @@ def canonical_form(c: Candidates, swapped: int) -> Candidates:
     return Candidates(c.standing, feature, column, row, theta, point, c.gap, null, force)
 
 
-def on_each_face(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
-    """Which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M, 19).
+def assign_contacts_to_faces(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
+    """Return which contacts (N, 19) may be listed on which faces: numbers (M,) in order, and contacts (M,
+    19).
 
     Of the first ``pegs`` those at a joint may touch either feature.
     """
     ends = find_row_ends(problem.rows)
     # A feature shorter than that has others beside it that do not begin where it ends.
-    one, other = joints(problem, 4.0 * NEAR_END)
-    points, numbers = candidates_of(records, problem).point, np.arange(len(records))
+    one, other = find_joints(problem, 4.0 * NEAR_END)
+    points, numbers = make_candidates(records, problem).point, np.arange(len(records))
     for k in range(pegs):
         feature = records[:, record.FEATURES + k].astype(np.int64)
         beside = np.abs(points[numbers, k, None] - ends[feature]).max(axis=2) <= NEAR_END
@@ -132,28 +133,29 @@ def on_each_face(records: Array, problem: Problem, pegs: int) -> tuple[IntArray,
 
 
 def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.bool_]:
-    """Whether contacts (N, P) at joints are on the features of the lowest numbers there, where they are listed.
+    """Return whether contacts (N, P) at joints are on the features of the lowest numbers there, where they
+    are listed.
 
     Up to a limit of the location error the contact on another feature alone may be found, where fewer or more
     contacts share a face. The one that is listed is beyond the limit then.
     """
-    one, other = joints(problem, JOINT)
+    one, other = find_joints(problem, JOINT)
     is_lowest = np.ones((len(problem.rows), 2), np.bool_)
     is_lowest.reshape(-1)[one[other // 2 < one // 2]] = False
     at_end = np.abs(point[:, :, None] - find_row_ends(problem.rows)[feature]).max(axis=3) <= END_SLACK
     return np.asarray((is_lowest[feature] | ~at_end).all(axis=(1, 2)))
 
 
-def joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
-    """Which ends of features, two for each, meet which of others that the same pegs touch, within so many mm."""
+def find_joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
+    """Return which ends of features, two for each, meet which of others that the same pegs touch, within so many mm."""
     one, other = find_meeting_ends(find_row_ends(problem.rows).reshape(-1, 2), within)
     begin, last = problem.moving
     alike = ((one // 2 >= begin) & (one // 2 < last)) == ((other // 2 >= begin) & (other // 2 < last))
     return one[alike], other[alike]
 
 
-def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
-    """Whole numbers packed into as few numbers (N,) as hold them, in lexicographic order.
+def pack_integers(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
+    """Return the whole numbers packed into as few numbers (N,) as hold them, in lexicographic order.
 
     Parameters
     ----------
@@ -172,22 +174,24 @@ def packed(*columns: tuple[NDArray[np.integer[Any]], int]) -> list[IntArray]:
     return words
 
 
-def most_holes(problem: Problem) -> tuple[int, int]:
-    """The largest column and row that candidates in the listed form can have: no two pegs are farther apart
-    than the part is wide."""
+def bound_holes(problem: Problem) -> tuple[int, int]:
+    """Return the largest column and row that candidates in the listed form can have: no two pegs are farther
+    apart than the part is wide.
+    """
     lattice = problem.frame.lattice
     reach = problem.diameter + abs(lattice.row_offset)
     return int(reach / lattice.pitch_x) + 2, int(reach / lattice.pitch_y) + 2
 
 
-def packed_holes(c: Candidates, most: tuple[int, int] | None = None) -> list[IntArray]:
-    """Arrangements and holes of candidates, packed; ``most`` are the largest column and row that may be
-    packed alike."""
+def pack_holes(c: Candidates, most: tuple[int, int] | None = None) -> list[IntArray]:
+    """Return the arrangements and holes of candidates, packed; ``most`` are the largest column and row that
+    may be packed alike.
+    """
     column, row = (c.column.max(initial=0), c.row.max(initial=0)) if most is None else most
-    return packed((c.standing[:, None], MOST_PEGS), (c.column, column), (c.row, row))
+    return pack_integers((c.standing[:, None], MOST_PEGS), (c.column, column), (c.row, row))
 
 
-def changes(words: list[IntArray]) -> NDArray[np.bool_]:
+def mark_changes(words: list[IntArray]) -> NDArray[np.bool_]:
     """Return which entries (N,) of packed numbers differ from the one before; the first does."""
     fresh = np.zeros(len(words[0]), np.bool_)
     fresh[:1] = True
@@ -196,10 +200,10 @@ def changes(words: list[IntArray]) -> NDArray[np.bool_]:
     return fresh
 
 
-def clusters(
+def split_into_clusters(
     order: IntArray, fresh: NDArray[np.bool_], *values: tuple[Array, float]
 ) -> tuple[IntArray, NDArray[np.bool_]]:
-    """Groups (N,) in an order, beginning where ``fresh``, split where one value after the other leaps."""
+    """Return the groups (N,) in an order, beginning where ``fresh``, split where one value after the other leaps."""
     for numbers, leap in values:
         group = np.cumsum(fresh)
         again = np.lexsort([numbers[order], group])
@@ -209,19 +213,19 @@ def clusters(
     return order, fresh
 
 
-def same_holes_first(c: Candidates) -> tuple[IntArray, IntArray]:
+def order_by_same_holes(c: Candidates) -> tuple[IntArray, IntArray]:
     """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in
     all these."""
-    words = packed_holes(c)
-    order = order_of(key_of(*words, c.theta))
-    fresh = changes([word[order] for word in words])
+    words = pack_holes(c)
+    order = order_of(make_keys(*words, c.theta))
+    fresh = mark_changes([word[order] for word in words])
     fresh[1:] |= np.diff(c.theta[order]) > SAME_POSE
     return order, np.cumsum(fresh)
 
 
-def listed_once(c: Candidates) -> Candidates:
-    """Candidates sorted by type, holes, orientation, faces and place, without those of the same holes and
-    pose.
+def list_each_once(c: Candidates) -> Candidates:
+    """Return the candidates sorted by type, holes, orientation, faces and place, without those of the same
+    holes and pose.
 
     A contact exactly at a tangent joint is found on both faces that meet there. Two fixtures with the same
     holes and the same orientation may still differ in where the workpiece lies; one number that mixes all
@@ -229,13 +233,15 @@ def listed_once(c: Candidates) -> Candidates:
     """
     if len(c.standing) == 0:
         return c
-    first, group = same_holes_first(c)
-    fresh = changes([group])
+    first, group = order_by_same_holes(c)
+    fresh = mark_changes([group])
     alone = fresh & np.append(fresh[1:], True)
     if alone.all():
         return c.take(first)
     shared = np.flatnonzero(~alone)
-    kept = np.concatenate([np.flatnonzero(alone), shared[different_places(c, first[shared], group[shared])]])
+    kept = np.concatenate(
+        [np.flatnonzero(alone), shared[are_at_different_places(c, first[shared], group[shared])]]
+    )
     return c.take(first[kept[np.argsort(group[kept], kind="stable")]])
 
 
@@ -247,9 +253,9 @@ def place_number(point: Array, gap: Array) -> Array:
     return np.asarray(point @ np.array([1.0, 0.7548776662]) + 0.5698402910 * gap)
 
 
-def different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
+def are_at_different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArray:
     """Return which of candidates ``first`` (K,), in ``group`` (K,) by their holes and orientations, are no
-    repetitions, in the order of group, faces and place; see :func:`listed_once`."""
+    repetitions, in the order of group, faces and place; see :func:`list_each_once`."""
     place = place_number(c.point[first, 0], c.gap[first])
     order = np.lexsort([place, group])
     new = np.ones(len(order), np.bool_)
@@ -259,7 +265,7 @@ def different_places(c: Candidates, first: IntArray, group: IntArray) -> IntArra
     run = np.empty(len(order), np.int64)
     run[order] = np.cumsum(new)
     features = (c.feature[first], c.feature.max())
-    order = np.lexsort([*reversed(packed((run[:, None], len(run)), features))])
+    order = np.lexsort([*reversed(pack_integers((run[:, None], len(run)), features))])
     once = order[np.concatenate([[True], np.diff(run[order]) > 0])]
-    words = [place, *reversed(packed((group[:, None], int(group[-1])), features))]
+    words = [place, *reversed(pack_integers((group[:, None], int(group[-1])), features))]
     return np.asarray(once[np.lexsort([word[once] for word in words])])

@@ -21,7 +21,7 @@ from workhold.conventions import FORCES_OFF, MOST_FORCE, NO_REACTION, SAME_POSE
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import IS_ARC, RADIUS, X, Y
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.clamp_placement import axis_of, direction_number
+from workhold.listing.clamp_placement import find_axis, find_direction_number
 from workhold.listing.placing import LOCATOR_CONTACTS, TIP, clamp_placement
 from workhold.listing.wall_fixtures import WallFixtures
 from workhold.proof.deciding import BALLS
@@ -30,7 +30,7 @@ from workhold.statics.contact_matrix import compute_outward_normals, wrenches
 if TYPE_CHECKING:
     from workhold.proof.ball_contacts import CandidateBox
 
-__all__ = ["ClampContacts", "box_beside", "contacts_of_candidates", "contacts_on_wall"]
+__all__ = ["ClampContacts", "make_box_beside", "make_contacts_of_candidates", "make_contacts_on_wall"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -80,7 +80,7 @@ class ClampContacts:
     hole_of: IntArray
 
     @classmethod
-    def joined(cls, parts: Sequence[ClampContacts]) -> ClampContacts:
+    def concatenate(cls, parts: Sequence[ClampContacts]) -> ClampContacts:
         names = [one.name for one in fields(ClampContacts) if one.name != "hole_of"]
         starts = np.cumsum([0, *(len(part.theta) for part in parts)])
         hole_of = np.concatenate([part.hole_of + start for part, start in zip(parts, starts, strict=False)])
@@ -90,17 +90,17 @@ class ClampContacts:
         )
 
 
-def contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
+def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
     """Return the contacts of a wall, a locator and a clamp that the search of one direction proved."""
-    found = found.listed_once()
+    found = found.list_each_once()
     found = found.take(is_one_of_two(found.null[:, :3], found.push))
-    index, hole = found.placement(problem).holes(problem, every=True)
+    index, hole = found.make_clamp_placement(problem).choose_holes(problem, every=True)
     kept = np.unique(index)
     found, hole_of = found.take(kept), np.searchsorted(kept, index)
     flush, plate, line = problem.workpiece.flush, problem.toolkit.carriers[0], found.line[hole_of]
     height = found.row * plate.pitch[1] + plate.offset[1]
     return ClampContacts(
-        direction=np.full(len(found), direction_number(problem.toolkit)),
+        direction=np.full(len(found), find_direction_number(problem.toolkit)),
         feature=found.feature[:, :1],
         column=np.zeros((len(found), 1), np.int64),
         row=found.row[:, None],
@@ -115,12 +115,12 @@ def contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
         taken=found.null[:, [2, 0, 1]],
         push=found.push,
         doubt=found.doubt,
-        holes=np.stack([line, hole] if axis_of(problem.toolkit.moving) else [hole, line], axis=1),
+        holes=np.stack([line, hole] if find_axis(problem.toolkit.moving) else [hole, line], axis=1),
         hole_of=hole_of,
     )
 
 
-def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
+def make_contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
     """Return the contacts of three locators and a clamp that the search of one direction proved."""
     frame = problem.frame
     rows = problem.rows[c.feature]
@@ -130,12 +130,14 @@ def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
     axis = np.array(frame.toolkit.moving_axis) * frame.toolkit.clamping
     turned = np.stack(rotate_vectors(axis[0], axis[1], -(c.theta + frame.quarters * np.pi / 2)), axis=1)
     push = (turned * wrench[:, TIP, :2]).sum(axis=1)
-    taken, push, doubt = sharpened(c, taken, push, *doubts(inverse, taken, rows, push, problem), problem)
+    taken, push, doubt = sharpen_reactions(
+        c, taken, push, *bound_rounding_doubts(inverse, taken, rows, push, problem), problem
+    )
     column, row = frame.step_back(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
     lowest = np.stack([column.min(axis=1, initial=1 << 30), row.min(axis=1, initial=1 << 30)], axis=1)
     column, row = column - lowest[:, :1], row - lowest[:, 1:]
     placement = clamp_placement(c, problem)
-    index, hole = placement.holes(problem, every=True)
+    index, hole = placement.choose_holes(problem, every=True)
     pitch = np.array(frame.toolkit.carriers[0].pitch)
     cosine, sine = QUARTERS[frame.quarters]
     along, height = placement.tip.T
@@ -156,7 +158,7 @@ def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
     taken = np.take_along_axis(taken, order, axis=1)[kept]
     there = kept[index]
     return ClampContacts(
-        direction=np.full(kept.sum(), direction_number(problem.toolkit)),
+        direction=np.full(kept.sum(), find_direction_number(problem.toolkit)),
         feature=feature,
         column=column,
         row=row,
@@ -175,10 +177,10 @@ def contacts_of_candidates(c: Candidates, problem: Problem) -> ClampContacts:
     )
 
 
-def sharpened(
+def sharpen_reactions(
     c: Candidates, taken: Array, push: Array, push_off: Array, doubt: Array, problem: Problem
 ) -> tuple[Array, Array, Array]:
-    """Forces of the locators (N, 3), pushes and doubts (N,) of contacts.
+    """Return the forces of the locators (N, 3), pushes and doubts (N,) of contacts.
 
     They are computed in balls where doubles leave forces in doubt. ``push_off`` and ``doubt`` (N,) are how
     far pushes and forces may be off.
@@ -192,23 +194,23 @@ def sharpened(
     chosen = np.flatnonzero(off > FORCES_OFF).tolist()
     with BALLS if chosen else nullcontext():
         for k in chosen:
-            sharp = bound_reactions(box_of(c, k, problem), problem.limits)
+            sharp = bound_reactions(make_candidate_box(c, k, problem), problem.limits)
             if sharp is not None:
                 taken[k], push[k], doubt[k] = sharp.taken, sharp.push, sharp.doubt
     return taken, push, doubt
 
 
-def box_of(c: Candidates, number: int, problem: Problem) -> CandidateBox:
+def make_candidate_box(c: Candidates, number: int, problem: Problem) -> CandidateBox:
     """Return a contact of three locators and a clamp in the frame of the search."""
     column, row, lattice = c.column[number], c.row[number], problem.frame.lattice
     x, y = (column[LOCATOR_CONTACTS] - column[0]) * lattice.pitch_x, (row - row[0]) * lattice.pitch_y
     separation = float(x.max() + c.gap[number])
     offsets = list(zip([*x.tolist(), 0.0], y.tolist(), strict=True))
     middle = -float(c.theta[number]), *c.point[number, 0].tolist(), separation
-    return box_beside(c.feature[number].tolist(), offsets, middle, problem)
+    return make_box_beside(c.feature[number].tolist(), offsets, middle, problem)
 
 
-def box_beside(
+def make_box_beside(
     features: Sequence[int],
     offsets: Sequence[tuple[float, float]],
     middle: tuple[float, float, float, float],
@@ -230,7 +232,8 @@ def box_beside(
 
 
 def is_one_of_two(taken: Array, push: Array) -> BoolArray:
-    """Which clamps (N,) may be one of two: they neither hold the part alone nor press a locator too hard.
+    """Return which clamps (N,) may be one of two: they neither hold the part alone nor press a locator too
+    hard.
 
     That is with more than ``MOST_FORCE`` times their own force. Forces ``taken`` (N, 3) of the locators and
     ``push`` (N,) of the clamp are per unit of that on the clamp's face.
@@ -239,9 +242,11 @@ def is_one_of_two(taken: Array, push: Array) -> BoolArray:
     return np.asarray(needs_another & (np.abs(taken).max(axis=1, initial=0.0) <= MOST_FORCE * push))
 
 
-def doubts(inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem) -> tuple[Array, Array]:
-    """How far clamps' pushes (N,) and forces of the locators (N, 3) may be off by the rounding of places and
-    products.
+def bound_rounding_doubts(
+    inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem
+) -> tuple[Array, Array]:
+    """Return how far clamps' pushes (N,) and forces of the locators (N, 3) may be off by the rounding of
+    places and products.
 
     A polished place is off by the inverse of the contact equations times their rounding, and a tip along its
     line by that over its push. A normal is turned by so much over its radius, and moments are off by so much

@@ -28,11 +28,11 @@ __all__ = [
     "FAR",
     "OPENING",
     "ClampPlacement",
-    "axis_of",
-    "direction_number",
+    "find_axis",
+    "find_direction_number",
     "is_bolted",
     "is_upright",
-    "last_holes",
+    "find_last_holes",
 ]
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ DIRECTION_NAMES = tuple(DIRECTIONS)
 OPENING = np.array([Travel(angle, 0.0, None).unit for angle in DIRECTIONS.values()])
 
 
-def direction_number(toolkit: Toolkit) -> int:
+def find_direction_number(toolkit: Toolkit) -> int:
     return DIRECTION_NAMES.index(toolkit.arrangements[0].direction or "")
 
 
@@ -55,8 +55,8 @@ def is_upright(direction: IntArray) -> BoolArray:
     return np.asarray(direction >= DIRECTION_NAMES.index("-y"))
 
 
-def axis_of(carrier: Carrier) -> int:
-    """0 for a carrier that slides along its rows, 1 for one that slides along its columns."""
+def find_axis(carrier: Carrier) -> int:
+    """Return 0 for a carrier that slides along its rows, 1 for one that slides along its columns."""
     return 0 if carrier.travel is None or carrier.travel.unit[0] != 0.0 else 1
 
 
@@ -65,7 +65,7 @@ def is_bolted(clamp: Carrier) -> bool:
     return clamp.travel is not None and clamp.travel.most is not None
 
 
-def last_holes(plate: Carrier) -> tuple[float, float]:
+def find_last_holes(plate: Carrier) -> tuple[float, float]:
     """Return the most columns and rows that holes of a plate are apart; infinite where it has no end."""
     columns, rows = (inf if count is None else count - 1.0 for count in (plate.columns, plate.rows))
     return columns, rows
@@ -101,15 +101,16 @@ class ClampPlacement:
     seen: Array
     theta: Array
 
-    def nearest(self, problem: Problem) -> tuple[IntArray, BoolArray]:
-        """The nearest hole (N,) of each clamp, 0 without a travel, and whether (N,) there is one that will
-        do."""
-        index, number = self.holes(problem, every=False)
+    def find_nearest_holes(self, problem: Problem) -> tuple[IntArray, BoolArray]:
+        """Return the nearest hole (N,) of each clamp, 0 without a travel, and whether (N,) there is one that
+        will do.
+        """
+        index, number = self.choose_holes(problem, every=False)
         hole, fits = np.zeros(len(self.tip), np.int64), np.zeros(len(self.tip), np.bool_)
         hole[index], fits[index] = number, True
         return hole, fits
 
-    def holes(self, problem: Problem, every: bool) -> tuple[IntArray, IntArray]:
+    def choose_holes(self, problem: Problem, every: bool) -> tuple[IntArray, IntArray]:
         """Return the holes in which clamps may be bolted.
 
         Parameters
@@ -142,8 +143,9 @@ class ClampPlacement:
         return index[order], numbers[order]
 
     def is_clear(self, index: IntArray, stroke: Array, problem: Problem) -> BoolArray:
-        """Which clamps of an index (M,), from their tips to holes a stroke (M,) behind them, clear locators,
-        part and what a program sweeps."""
+        """Return which clamps of an index (M,), from their tips to holes a stroke (M,) behind them, clear
+        locators, part and what a program sweeps.
+        """
         radius, behind = self.clamp.peg_radius, np.zeros((len(index), 2))
         behind[:, self.axis] = self.back * stroke
         one, other = self.tip[index], self.tip[index] + behind

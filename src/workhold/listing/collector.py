@@ -31,16 +31,23 @@ from workhold.listing.asked import are_as_asked
 from workhold.listing.canonical_form import (
     Candidates,
     are_lowest,
-    candidates_of,
-    canonical_form,
-    listed_once,
-    most_holes,
-    packed_holes,
+    bound_holes,
+    list_each_once,
+    make_candidates,
+    make_canonical,
+    pack_holes,
 )
 from workhold.listing.identity import Identity
-from workhold.listing.placing import placeable, placed
-from workhold.listing.ranking import A_STEP, OrderKeys, keys_of, measured, order_keys, usual_errors
-from workhold.listing.runs import Runs, SortedRun, in_order, key_of
+from workhold.listing.placing import are_placeable, place_candidates
+from workhold.listing.ranking import (
+    A_STEP,
+    OrderKeys,
+    find_usual_errors,
+    make_order_keys,
+    measure_table,
+    order_keys,
+)
+from workhold.listing.runs import Runs, SortedRun, make_keys, map_in_order
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import CLOSURE_MARGIN
 from workhold.proof.deciding import Account, Course, decided
@@ -53,9 +60,9 @@ __all__ = [
     "BestFixtures",
     "Needed",
     "ResultCollector",
-    "blocks_of",
+    "split_into_blocks",
     "finish",
-    "listed_form",
+    "decide_and_list",
 ]
 
 Array = NDArray[np.float64]
@@ -65,7 +72,7 @@ BLOCK = 1 << 14
 
 
 def finish(records: list[Array], problem: Problem, cancel: Event | None = None) -> tuple[Candidates, Account]:
-    """Decide records, brings them to the listed form and lists them once, on this thread.
+    """Decide records, brings them to the listed form and list them once, on this thread.
 
     Parameters
     ----------
@@ -77,29 +84,32 @@ def finish(records: list[Array], problem: Problem, cancel: Event | None = None) 
     (the fixtures, an account of all records)
     """
     course = Course(sum(map(len, records)), cancel=cancel)
-    parts, accounts = zip(*(listed_form(block, problem, course) for block in blocks_of(records)), strict=True)
-    return listed_once(Candidates.joined(parts)), Account.together(list(accounts))
+    parts, accounts = zip(
+        *(decide_and_list(block, problem, course) for block in split_into_blocks(records)), strict=True
+    )
+    return list_each_once(Candidates.concatenate(parts)), Account.together(list(accounts))
 
 
-def blocks_of(records: Iterable[Array]) -> Iterator[Array]:
-    """Records (N, 19) in blocks, of which there is at least one."""
+def split_into_blocks(records: Iterable[Array]) -> Iterator[Array]:
+    """Yield the records (N, 19) in blocks, of which there is at least one."""
     batches = Batches()
     for array in records:
         yield from batches.add(array)
     yield batches.rest()
 
 
-def listed_form(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
-    """Records (N, 19) decided: the fixtures among them that fit the toolkit and are as asked, in the form they
-    are listed in, and an account of all."""
+def decide_and_list(records: Array, problem: Problem, course: Course) -> tuple[Candidates, Account]:
+    """Return the records (N, 19) decided: the fixtures among them that fit the toolkit and are as asked, in
+    the form they are listed in, and an account of all.
+    """
     proven, account = decided(records, problem, course)
-    candidates = canonical_form(candidates_of(proven, problem), problem.frame.swapped)
-    fits = placeable(candidates, problem)
+    candidates = make_canonical(make_candidates(proven, problem), problem.frame.swapped)
+    fits = are_placeable(candidates, problem)
     if not fits.all():
         candidates = candidates.take(fits)
     if problem.query.is_sifted:
         candidates = candidates.take(
-            are_as_asked(measured(placed(candidates, problem), problem), problem.query)
+            are_as_asked(measure_table(place_candidates(candidates, problem), problem), problem.query)
         )
     return candidates, account
 
@@ -163,7 +173,7 @@ class BestFixtures:
     effective: EffectiveErrors | None = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.course, self.effective = Course(0, cancel=self.cancel), usual_errors(self.problem.query)
+        self.course, self.effective = Course(0, cancel=self.cancel), find_usual_errors(self.problem.query)
 
     @property
     def most(self) -> int:
@@ -182,8 +192,8 @@ class BestFixtures:
         waiting, self.waiting = self.waiting, []
         parts = [] if self.kept is None else [self.kept]
         fresh = 0
-        for block in blocks_of(waiting):
-            part, account = listed_form(block, self.problem, self.course)
+        for block in split_into_blocks(waiting):
+            part, account = decide_and_list(block, self.problem, self.course)
             if self.is_limited or self.needed.error < inf:
                 part = part.take(are_lowest(part.feature, part.point, self.problem))
             self.accounts.append(account)
@@ -191,17 +201,17 @@ class BestFixtures:
             fresh += len(part.standing)
             # Measured a share at a time, so that one who asks to stop does not wait for all.
             if fresh >= max(BLOCK, self.most):
-                parts, fresh = [self.cut(listed_once(Candidates.joined(parts)))], 0
-        self.kept = self.cut(listed_once(Candidates.joined(parts)))
+                parts, fresh = [self.cut(list_each_once(Candidates.concatenate(parts)))], 0
+        self.kept = self.cut(list_each_once(Candidates.concatenate(parts)))
 
     def cut(self, everything: Candidates) -> Candidates:
-        """The fixtures of those listed once that may be among the best, or tie with the last of these."""
+        """Return the fixtures of those listed once that may be among the best, or tie with the last of these."""
         if len(everything.standing) <= self.most:
             return everything
-        table = measured(placed(everything, self.problem), self.problem)
+        table = measure_table(place_candidates(everything, self.problem), self.problem)
         query = self.problem.query
         keys = order_keys(table, query, self.effective)
-        chosen = keys.kept(self.most)
+        chosen = keys.are_among_best(self.most)
         self.has_dropped |= not chosen.all()
         self.keys = keys.take(chosen)
         # One that is none for a workshop is worse than any that is, whatever its margin.
@@ -209,7 +219,7 @@ class BestFixtures:
             margin = float(table.quality[chosen, CLOSURE_MARGIN].min()) - MARGIN_SLACK
             self.needed = Needed(margin=max(margin, 0.0))
         # What is surely a step behind so many is not among the best.
-        if (last := self.keys.last_fine_error(self.most)) is not None:
+        if (last := self.keys.find_last_fine_error(self.most)) is not None:
             self.needed = Needed(error=min(A_STEP * last, self.needed.error))
         return everything.take(chosen)
 
@@ -217,16 +227,17 @@ class BestFixtures:
     def found_keys(self) -> OrderKeys:
         self.decide()
         assert self.kept is not None
-        table = measured(placed(self.kept, self.problem), self.problem)
+        table = measure_table(place_candidates(self.kept, self.problem), self.problem)
         return order_keys(table, self.problem.query, self.effective)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Whether nothing that has no less than one bound is among the best: so many were decided already
-        that some of them are dropped."""
+        """Return whether nothing that has no less than one bound is among the best: so many were decided
+        already that some of them are dropped.
+        """
         self.decide()
-        return self.keys is not None and bool(bound.beaten(self.keys, self.most, bound.lowest).all())
+        return self.keys is not None and bool(bound.are_beaten(self.keys, self.most, bound.lowest).all())
 
-    def finished(self) -> tuple[Candidates, Account]:
+    def finish(self) -> tuple[Candidates, Account]:
         """Return all that may be among the best, and the account of all records, once the search is over."""
         self.decide()
         assert self.kept is not None
@@ -280,14 +291,14 @@ class ResultCollector:
     fine: OrderKeys | None = field(default=None, init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.course, self.effective = Course(0, cancel=self.cancel), usual_errors(self.problem.query)
+        self.course, self.effective = Course(0, cancel=self.cancel), find_usual_errors(self.problem.query)
         self.by_holes, self.by_turn, self.by_rank = (Runs(self.folder) for _ in range(3))
         self.identity = Identity(self.problem.query.toolkit, self.problem.workpiece)
         kinds = len(self.problem.query.toolkit.arrangements)
         self.found, self.distinct = np.zeros(kinds, np.int64), np.zeros(kinds, np.int64)
 
     @contextmanager
-    def given_up_on_errors(self) -> Iterator[None]:
+    def give_up_on_errors(self) -> Iterator[None]:
         """End soon what is being decided when the block ends by an error or a signal: the pool waits for
         it."""
         try:
@@ -305,18 +316,18 @@ class ResultCollector:
         return Needed()
 
     def decide(self, block: NDArray[np.float64]) -> None:
-        self.deciding.append(self.pool.submit(self.decided, block))
+        self.deciding.append(self.pool.submit(self.decide_block, block))
         while len(self.deciding) > self.ahead:
             self.keep(*self.deciding.popleft().result())
 
-    def decided(self, block: NDArray[np.float64]) -> tuple[SortedRun, Account]:
+    def decide_block(self, block: NDArray[np.float64]) -> tuple[SortedRun, Account]:
         """Return the fixtures of a block sorted by their holes, and what became of its records."""
-        candidates, account = listed_form(block, self.problem, self.course)
-        return self.by_their_holes(candidates), account
+        candidates, account = decide_and_list(block, self.problem, self.course)
+        return self.sort_by_holes(candidates), account
 
-    def by_their_holes(self, candidates: Candidates) -> SortedRun:
-        key = key_of(*packed_holes(candidates, most_holes(self.problem)))
-        return SortedRun.of(key, astuple(candidates, recurse=False))
+    def sort_by_holes(self, candidates: Candidates) -> SortedRun:
+        key = make_keys(*pack_holes(candidates, bound_holes(self.problem)))
+        return SortedRun.from_columns(key, astuple(candidates, recurse=False))
 
     def keep(self, run: SortedRun, account: Account) -> None:
         self.by_holes.add(run)
@@ -324,7 +335,7 @@ class ResultCollector:
 
     def add(self, candidates: Candidates, account: Account) -> None:
         """Take fixtures that are decided already."""
-        self.keep(self.by_their_holes(candidates), account)
+        self.keep(self.sort_by_holes(candidates), account)
 
     def finish_deciding(self, progress: Progress | None = None) -> Account:
         """Wait for what is being decided; the account of all records."""
@@ -338,14 +349,14 @@ class ResultCollector:
         return Account.together(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """List once, measures and counts; whether nothing was left because somebody asked to stop."""
-        parts, done = self.by_holes.parts(), 0
+        """List once, measures and count; whether nothing was left because somebody asked to stop."""
+        parts, done = self.by_holes.list_parts(), 0
         course = Course(len(parts), cancel=self.cancel)
-        for table, turned, least in in_order(
-            self.pool, self.ahead, self.measured_part, list(enumerate(parts))
+        for table, turned, least in map_in_order(
+            self.pool, self.ahead, self.measure_part, list(enumerate(parts))
         ):
             done += 1
-            self.fine = least if self.fine is None else self.fine.followed_by(least).least_of_all
+            self.fine = least if self.fine is None else self.fine.concatenate(least).least_of_all
             self.by_rank.add(table)
             self.found += np.bincount(table.columns[0], minlength=len(self.found))
             if turned is not None:
@@ -357,7 +368,7 @@ class ResultCollector:
         self.by_holes.close()
         self.rank()
         if self.identity.is_symmetric:
-            for part in in_order(self.pool, self.ahead, taken, self.by_turn.parts()):
+            for part in map_in_order(self.pool, self.ahead, take_run, self.by_turn.list_parts()):
                 arrangement, pose, *words = part.columns
                 self.distinct += self.identity.count(words, pose, arrangement)
             self.by_turn.close()
@@ -365,7 +376,7 @@ class ResultCollector:
             self.distinct += self.found
         return done == len(parts)
 
-    def measured_part(
+    def measure_part(
         self, numbered: tuple[int, Callable[[], SortedRun]]
     ) -> tuple[SortedRun, SortedRun | None, OrderKeys]:
         """Return the fixtures of a part in the order of their ranks, as far as these depend on no other part.
@@ -374,20 +385,20 @@ class ResultCollector:
         of the one with the least effective error.
         """
         number, part = numbered
-        candidates = listed_once(Candidates(*part().columns))
-        table = measured(placed(candidates, self.problem), self.problem)
+        candidates = list_each_once(Candidates(*part().columns))
+        table = measure_table(place_candidates(candidates, self.problem), self.problem)
         # However many rank alike, each has a key of its own, so that parts stay small.
         identity = np.arange(len(table)) + (number << PLACE_BITS)
         keys, columns = order_keys(table, self.problem.query, self.effective), table.columns
         if keys.error is None:
-            ranked = SortedRun.of(key_of(*keys.first.T, identity), columns)
+            ranked = SortedRun.from_columns(make_keys(*keys.first.T, identity), columns)
         else:
             # Steps are known when all are measured.
-            ranked = SortedRun(key_of(identity), (*columns, keys.error))
+            ranked = SortedRun(make_keys(identity), (*columns, keys.error))
         if not self.identity.is_symmetric:
             return ranked, None, keys.least_of_all
-        words, pose = self.identity.smallest(table)
-        turned = SortedRun.of(key_of(*words), (table.arrangement, pose, *words))
+        words, pose = self.identity.find_smallest_images(table)
+        turned = SortedRun.from_columns(make_keys(*words), (table.arrangement, pose, *words))
         return ranked, turned, keys.least_of_all
 
     @property
@@ -396,23 +407,25 @@ class ResultCollector:
         return None if self.fine is None else self.fine.least
 
     def rank(self) -> None:
-        """Orders what is measured by the steps above the least error of all."""
+        """Order what is measured by the steps above the least error of all."""
         if self.effective is None:
             return
         measured, self.by_rank = self.by_rank, Runs(self.folder)
-        for run in in_order(self.pool, self.ahead, self.ranked_run, measured.each()):
+        for run in map_in_order(self.pool, self.ahead, self.rank_run, measured.iterate_runs()):
             self.by_rank.add(run)
         measured.close()
 
-    def ranked_run(self, part: Callable[[], SortedRun]) -> SortedRun:
+    def rank_run(self, part: Callable[[], SortedRun]) -> SortedRun:
         run = part()
         *columns, error = run.columns
         if self.is_part and not self.course.is_stopped:
             return SortedRun(run.keys, tuple(columns))
         table = FixtureTable(*columns)
-        keys = keys_of(table.quality, self.problem.query, error, classify_angles(table.theta))
+        keys = make_order_keys(table.quality, self.problem.query, error, classify_angles(table.theta))
         identity = run.keys.view(">u8").astype(np.int64)
-        return SortedRun.of(key_of(*keys.numbers(self.least).T, identity), table.columns)
+        return SortedRun.from_columns(
+            make_keys(*keys.make_order_numbers(self.least).T, identity), table.columns
+        )
 
     @property
     def listed(self) -> int:
@@ -420,11 +433,12 @@ class ResultCollector:
         found = int(self.found.sum())
         return min(found, LISTED_LATE) if self.course.is_stopped else found
 
-    def tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
-        """The fixtures, best first, in tables one after the other; when somebody asks to stop, the first of
-        them."""
-        parts, listed = self.by_rank.parts(), 0
-        for number, part in enumerate(in_order(self.pool, self.ahead, taken, parts), 1):
+    def iterate_tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
+        """Yield the fixtures, best first, in tables one after the other; when somebody asks to stop, the
+        first of them.
+        """
+        parts, listed = self.by_rank.list_parts(), 0
+        for number, part in enumerate(map_in_order(self.pool, self.ahead, take_run, parts), 1):
             rows = min(len(part), max(self.listed - listed, 0))
             listed += rows
             yield FixtureTable(*part.columns).take(slice(rows))
@@ -435,5 +449,5 @@ class ResultCollector:
         self.by_rank.close()
 
 
-def taken(part: Callable[[], SortedRun]) -> SortedRun:
+def take_run(part: Callable[[], SortedRun]) -> SortedRun:
     return part()

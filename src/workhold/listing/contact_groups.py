@@ -39,8 +39,8 @@ class PackedContacts:
     reals: Array
 
     @classmethod
-    def of(cls, blocks: list[Array]) -> PackedContacts:
-        """The records of blocks, each (N, 19); the list is emptied, since there is no room for both."""
+    def from_blocks(cls, blocks: list[Array]) -> PackedContacts:
+        """Return the records of blocks, each (N, 19); the list is emptied, since there is no room for both."""
         end = sum(map(len, blocks))
         small = all(np.abs(block[:, :PSI]).max(initial=0.0) < SMALL for block in blocks)
         whole = np.empty((end, PSI), np.int16 if small else np.int64)
@@ -59,7 +59,7 @@ class PackedContacts:
         """Return the records (M, 19) of an index array or slice."""
         return np.hstack([self.whole[chosen], self.reals[chosen]])
 
-    def parts(self) -> Iterator[Array]:
+    def iterate_parts(self) -> Iterator[Array]:
         """Yield all records, some at a time; one part of nothing where there are none."""
         for first in range(0, max(len(self), 1), TOGETHER):
             yield self.take(slice(first, first + TOGETHER))
@@ -95,8 +95,11 @@ class SeatGroups:
     def __len__(self) -> int:
         return len(self.starts)
 
-    def batches(self, kept: RankedTable, floor: int, together: int = FIRST_CONTACTS) -> Iterator[IntArray]:
-        """Numbers of contacts, sorted, of more and more groups, until what is kept cannot get better.
+    def iterate_batches(
+        self, kept: RankedTable, floor: int, together: int = FIRST_CONTACTS
+    ) -> Iterator[IntArray]:
+        """Yield the numbers of contacts, sorted, of more and more groups, until what is kept cannot get
+        better.
 
         Those come first that may have the least error of all, then those that may rank first.
 
@@ -109,12 +112,12 @@ class SeatGroups:
         while len(left):
             bounds = self.bounds.take(left)
             lowest = min(floor, bounds.lowest)
-            left, keys = left[~(out := kept.beaten(bounds, lowest))], kept.keys
+            left, keys = left[~(out := kept.are_beaten(bounds, lowest))], kept.keys
             kept.has_dropped |= bool(out.any())
             if len(left) == 0:
                 return
             bounds = bounds.take(~out)
-            numbers = bounds.numbers(keys.least if keys.is_fine.any() else bounds.lowest)
+            numbers = bounds.make_order_numbers(keys.least if keys.is_fine.any() else bounds.lowest)
             if bounds.error is not None and not keys.is_known_above(bounds.lowest):
                 # First what may have the least error.
                 numbers = np.column_stack([bounds.first, bounds.error, numbers])
@@ -122,30 +125,32 @@ class SeatGroups:
             left, numbers = left[by_bound], numbers[by_bound]
             end = int(np.searchsorted(np.cumsum(sizes[left]), together)) + 1
             if self.sharpened is None:
-                yield np.sort(self.among(left[:end])[0])
+                yield np.sort(self.select_contacts(left[:end])[0])
             else:
                 shift = numbers.shape[1] - self.bounds.width
                 same = (numbers[:, : self.alike + shift] == numbers[0, : self.alike + shift]).all(axis=1)
                 end = max(end, int(np.flatnonzero(same)[-1]) + 1)
                 rest = self.bounds.take(left[end:]).lowest
-                yield from self.between(left[:end]).batches(kept, min(floor, rest), together)
+                yield from self.select_groups_between(left[:end]).iterate_batches(
+                    kept, min(floor, rest), together
+                )
             left, together = left[end:], 2 * together
 
-    def among(self, groups: IntArray) -> tuple[IntArray, IntArray]:
+    def select_contacts(self, groups: IntArray) -> tuple[IntArray, IntArray]:
         """Return the contacts of some groups one after the other, and where each begins."""
         sizes = np.diff(self.starts, append=len(self.order))[groups]
         starts = np.cumsum(sizes) - sizes
         return self.order[np.arange(sizes.sum()) + np.repeat(self.starts[groups] - starts, sizes)], starts
 
-    def followed_by(self, last: IntArray) -> SeatGroups:
+    def append_group(self, last: IntArray) -> SeatGroups:
         """Return the groups, and one after them of contacts (N,) that hold nothing."""
         if len(last) == 0:
             return self
         order, starts = np.concatenate([self.order, last]), np.append(self.starts, len(self.order))
-        return SeatGroups(order, starts, self.bounds.followed_by(self.bounds.nothing))
+        return SeatGroups(order, starts, self.bounds.concatenate(self.bounds.nothing))
 
-    def between(self, groups: IntArray) -> SeatGroups:
+    def select_groups_between(self, groups: IntArray) -> SeatGroups:
         assert self.sharpened is not None
-        order, starts = self.among(groups)
+        order, starts = self.select_contacts(groups)
         sharp, bounds = self.sharpened(order, starts), self.bounds.take(groups)
-        return SeatGroups(order, starts, sharp.where(bounds.is_known, bounds))
+        return SeatGroups(order, starts, sharp.choose(bounds.is_known, bounds))

@@ -33,8 +33,8 @@ from workhold.geometry.symmetry import (
     rotate_vectors,
     symmetries,
 )
-from workhold.listing.canonical_form import changes, clusters, packed
-from workhold.listing.clamp_placement import axis_of
+from workhold.listing.canonical_form import mark_changes, pack_integers, split_into_clusters
+from workhold.listing.clamp_placement import find_axis
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import TILT
 from workhold.model.result import Result
@@ -45,11 +45,11 @@ __all__ = [
     "Entries",
     "Identity",
     "SetCount",
-    "entries",
-    "first_of_each",
-    "half_turns",
-    "identity_order",
-    "near_duplicates",
+    "make_entries",
+    "find_first_of_each",
+    "allows_half_turns",
+    "order_by_identity",
+    "number_near_duplicates",
 ]
 
 Array = NDArray[np.float64]
@@ -86,11 +86,14 @@ class Identity:
         """Whether a fixture need not be a set of its own."""
         return len(self.rotations) > 1
 
-    def smallest(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
-        """The smallest images of fixtures under the rotations: packed whole numbers (N,), and orientations
-        and places (N, P)."""
-        x, y = self.toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
-        forms = [self.form(table, x, y, sign) for sign in (1, -1)]
+    def find_smallest_images(self, table: FixtureTable) -> tuple[list[IntArray], Array]:
+        """Return the smallest images of fixtures under the rotations: packed whole numbers (N,), and
+        orientations and places (N, P).
+        """
+        x, y = self.toolkit.compute_hole_places(
+            table.arrangement, table.column, table.row, table.jaw_separation
+        )
+        forms = [self.make_form(table, x, y, sign) for sign in (1, -1)]
         halves = np.array([turns_into_itself(one, self.toolkit) for one in self.toolkit.arrangements])[
             table.arrangement
         ]
@@ -123,16 +126,18 @@ class Identity:
                 word[chosen[better]] = number[better]
         return words, pose
 
-    def form(self, table: FixtureTable, x: Array, y: Array, sign: int) -> tuple[list[IntArray], Array, Array]:
-        """What names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the first peg,
-        and how far (N, M) ahead of it what moves is.
+    def make_form(
+        self, table: FixtureTable, x: Array, y: Array, sign: int
+    ) -> tuple[list[IntArray], Array, Array]:
+        """Return what names fixtures but for the pose: packed whole numbers (N,), the place (N, 2) of the
+        first peg, and how far (N, M) ahead of it what moves is.
 
         Parameters
         ----------
         x, y : (N, K) places of pegs in mm.
         sign : -1 for fixtures after half a turn of everything, which turns the order of pegs round, else 1.
         """
-        carriers, on = self.toolkit.carriers, self.toolkit.peg_carriers(table.arrangement)
+        carriers, on = self.toolkit.carriers, self.toolkit.find_peg_carriers(table.arrangement)
         pegs = [carriers[number] for number in self.toolkit.arrangements[0].carriers][::sign]
         # Whole numbers of pegs: of those in holes of their own, of clamps, and of what moves.
         places = np.arange(len(pegs))[::sign]
@@ -149,25 +154,26 @@ class Identity:
             (column[:, own] - np.take_along_axis(first, on[:, own], axis=1), MOST_HOLES),
             (row[:, own] - lowest, MOST_HOLES),
         ]
-        upright = np.array([axis_of(carrier) == 1 for carrier in carriers])[on[:, movers]]
+        upright = np.array([find_axis(carrier) == 1 for carrier in carriers])[on[:, movers]]
         if self.every:
             # A clamp is named by its line; jaws have holes of their own.
             line = np.where(upright, column[:, movers] - first[:, :1], row[:, movers] - lowest)
             numbers.append((line[:, : len(clamps)] + MOST_HOLES, 2 * MOST_HOLES + 1))
         away = np.where(upright, y[:, movers] - y[:, own[:1]], x[:, movers] - x[:, own[:1]])
         anchor = np.stack([x[:, own[0]], y[:, own[0]]], axis=1)
-        return packed(*numbers), anchor, sign * away[:, : None if self.every else 0]
+        return pack_integers(*numbers), anchor, sign * away[:, : None if self.every else 0]
 
     def count(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
-        """How many sets of each arrangement (A,) there are among fixtures with these smallest images, of
-        arrangements (N,)."""
+        """Return how many sets of each arrangement (A,) there are among fixtures with these smallest images,
+        of arrangements (N,).
+        """
         order = np.lexsort(words[::-1])
-        fresh = changes([word[order] for word in words])
-        order, fresh = clusters(order, fresh, *((numbers, SAME_IMAGE) for numbers in pose.T))
+        fresh = mark_changes([word[order] for word in words])
+        order, fresh = split_into_clusters(order, fresh, *((numbers, SAME_IMAGE) for numbers in pose.T))
         return np.bincount(arrangement[order[fresh]], minlength=len(self.toolkit.arrangements))
 
 
-def half_turns(toolkit: Toolkit) -> bool:
+def allows_half_turns(toolkit: Toolkit) -> bool:
     """Return whether half a turn of everything leaves a plate as it is, which a wall does not allow."""
     return WALL_END not in toolkit.contacts
 
@@ -187,7 +193,7 @@ def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
         swaps = any(one.half_turns % 2 and one.carriers == (1, 0) for one in toolkit.symmetries)
         return swaps and arrangement.pegs == arrangement.pegs[::-1]
     units = np.array([way.unit for way in ways if way is not None])
-    return half_turns(toolkit) and len(units) == 2 and not units.sum(axis=0).any()
+    return allows_half_turns(toolkit) and len(units) == 2 and not units.sum(axis=0).any()
 
 
 def precedes(
@@ -223,7 +229,7 @@ class SetCount:
     def add(self, table: FixtureTable) -> None:
         self.found += np.bincount(table.arrangement, minlength=len(self.found))
         if self.identity.is_symmetric and len(table):
-            words, pose = self.identity.smallest(table)
+            words, pose = self.identity.find_smallest_images(table)
             self.images.append((table.arrangement, pose, *words))
 
     @property
@@ -234,13 +240,13 @@ class SetCount:
         arrangement, pose, *words = (np.concatenate(values) for values in zip(*self.images, strict=True))
         return self.identity.count(words, pose, arrangement)
 
-    def by_type(self, counts: IntArray) -> dict[str, int]:
+    def count_by_type(self, counts: IntArray) -> dict[str, int]:
         toolkit = self.identity.toolkit
         each = list(zip(toolkit.arrangements, counts.tolist(), strict=True))
         return {name: sum(count for one, count in each if one.name == name) for name in toolkit.types}
 
 
-def identity_order(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArray[np.intp]:
+def order_by_identity(table: FixtureTable, toolkit: Toolkit | None = None) -> NDArray[np.intp]:
     """Return the order of fixtures by type, holes, orientation, faces and place.
 
     Where the toolkit has a wall with ends, columns count from the first peg's, as on an endless one.
@@ -277,57 +283,61 @@ class Entries:
     unfit: int
 
 
-def entries(result: Result, with_unfit: bool = False) -> Entries:
-    """The entries of the best of a result; fixtures that are none for a workshop make entries only if asked
-    for, or if there are no others."""
+def make_entries(result: Result, with_unfit: bool = False) -> Entries:
+    """Return the entries of the best of a result; fixtures that are none for a workshop make entries only if
+    asked for, or if there are no others.
+    """
     table = result.table
     if result.toolkit.flat_jaws is not None:
-        return entries_of_holds(result, with_unfit)
+        return make_entries_of_holds(result, with_unfit)
     blocks = (table.take(slice(start, start + BLOCK)) for start in range(0, len(table), BLOCK))
     bad = np.concatenate(
         [np.zeros(0, np.bool_), *(unfit(block.quality, result.query.tolerance) for block in blocks)]
     )
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
     looked_at = shown[:MOST_LOOKED_AT]
-    index, like = first_of_each(near_duplicates(table.take(looked_at), result.workpiece, result.toolkit))
+    index, like = find_first_of_each(
+        number_near_duplicates(table.take(looked_at), result.workpiece, result.toolkit)
+    )
     return Entries(shown[index], like, len(bad) - len(shown))
 
 
-def entries_of_holds(result: Result, with_unfit: bool) -> Entries:
-    """The entries of what flat jaws hold: each by itself, as they differ in parallels, stop or side."""
+def make_entries_of_holds(result: Result, with_unfit: bool) -> Entries:
+    """Return the entries of what flat jaws hold: each by itself, as they differ in parallels, stop or side."""
     bad = np.array([hold.is_unfit for hold in result.holds], np.bool_)
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
     return Entries(shown, np.zeros(len(shown), np.int64), len(bad) - len(shown))
 
 
-def first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
-    """Places (E,) of the first member of each group, in order, and how many more members (E,) it has."""
+def find_first_of_each(groups: IntArray) -> tuple[IntArray, IntArray]:
+    """Return the places (E,) of the first member of each group, in order, and how many more members (E,) it has."""
     _, first, count = np.unique(groups, return_index=True, return_counts=True)
     order = np.argsort(first)
     return first[order], count[order] - 1
 
 
-def near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
+def number_near_duplicates(table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
     """Return a number (N,) for each fixture, the same for near duplicates."""
     if len(table) == 0 or table.column.shape[1] == 0:
         # What flat jaws hold differs in side, parallels or stop.
         return np.arange(len(table), dtype=np.int64)
-    carriers = toolkit.peg_carriers(table.arrangement)
+    carriers = toolkit.find_peg_carriers(table.arrangement)
     # Faces of each carrier's pegs in order, the first carrier's in front; with the pegs of each type where
     # they belong.
     order = np.lexsort((table.face, carriers), axis=-1)
     faces = np.take_along_axis(table.face.astype(np.int64), order, axis=1)
     tilted = (table.quality[:, TILT] > 0.0).astype(np.int64)
     keys = np.column_stack([table.arrangement, tilted, faces])
-    first, member = distinct_rows(keys)
-    _, group = distinct_rows(smallest_images(keys[first], workpiece, toolkit))
+    first, member = find_distinct_rows(keys)
+    _, group = find_distinct_rows(find_smallest_images(keys[first], workpiece, toolkit))
     return np.asarray(group[member])
 
 
-def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
-    """Where each distinct row of whole numbers (N, 6) from 0 upward comes first, in their order, and which
-    (N,) each is."""
-    words = np.column_stack(packed((keys, int(keys.max()))))
+def find_distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
+    """Return where each distinct row of whole numbers (N, 6) from 0 upward comes first, in their order, and
+    which (N,) each is.
+    """
+    words = np.column_stack(pack_integers((keys, int(keys.max()))))
     # One word, which is enough for most parts, is sorted far sooner than rows.
     _, first, member = np.unique(
         words.ravel() if words.shape[1] == 1 else words, axis=0, return_index=True, return_inverse=True
@@ -335,11 +345,11 @@ def distinct_rows(keys: IntArray) -> tuple[IntArray, IntArray]:
     return first, member.ravel()
 
 
-def smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
-    """The first image of each row (K, 6) of arrangement, tilt and faces under the symmetries of the part."""
+def find_smallest_images(keys: IntArray, workpiece: Workpiece, toolkit: Toolkit) -> IntArray:
+    """Return the first image of each row (K, 6) of arrangement, tilt and faces under the symmetries of the part."""
     every = workpiece.numbered
     numbers = np.array([face.number for face in every.faces])
-    carriers = toolkit.peg_carriers(keys[:, 0].astype(np.int8))
+    carriers = toolkit.find_peg_carriers(keys[:, 0].astype(np.int8))
     # Type I of a vise: as many pegs on either carrier, which a half turn swaps.
     swaps = ((carriers.max(axis=1) == 1) & ((carriers == 1).sum(axis=1) * 2 == carriers.shape[1]))[:, None]
     # Jaws whose pegs have different heights are no images of each other.

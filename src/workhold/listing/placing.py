@@ -19,13 +19,20 @@ from workhold.contact.problem import Frame, Problem
 from workhold.conventions import GAP_SLACK
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.listing.canonical_form import Candidates
-from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
+from workhold.listing.clamp_placement import ClampPlacement, find_axis, find_last_holes, is_bolted
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.requirements import lie_in_angle_ranges
 from workhold.proof.deciding import is_standing
-from workhold.rowwise import largest, smallest
+from workhold.rowwise import find_largest, find_smallest
 
-__all__ = ["Arranged", "arranged", "at_angle", "clamp_placement", "placeable", "placed"]
+__all__ = [
+    "Arranged",
+    "arrange_candidates",
+    "are_at_angle",
+    "clamp_placement",
+    "are_placeable",
+    "place_candidates",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -54,28 +61,28 @@ class Arranged:
     lift: IntArray
     fits: BoolArray
 
-    def travel(self, frame: Frame) -> Array:
-        """Travel (N,) of the moving carrier in mm."""
+    def compute_travel(self, frame: Frame) -> Array:
+        """Return the travel (N,) of the moving carrier in mm."""
         outward = (self.standing + self.moving) * frame.lattice.pitch_x
         return np.asarray(self.candidates.gap - outward + frame.travel_at_rest)
 
 
-def arranged(c: Candidates, problem: Problem) -> Arranged:
+def arrange_candidates(c: Candidates, problem: Problem) -> Arranged:
     angles, frame = problem.restrictions.angles, problem.frame
-    clear = bodies_clear(c, frame)
-    found = placed_as_is(c, frame)
-    found = evolve(found, fits=found.fits & clear & at_angle(c.theta, angles, frame))
+    clear = are_bodies_clear(c, frame)
+    found = place_as_is(c, frame)
+    found = evolve(found, fits=found.fits & clear & are_at_angle(c.theta, angles, frame))
     if not (angles or any(carrier.blocked for carrier in frame.carriers)):
         return found
     # What does not fit may fit after the half turn that swaps the carriers.
     again = np.flatnonzero(~found.fits & (c.standing == frame.swapped) & clear)
-    turned = half_turned(c.take(again), frame.swapped)
-    other = placed_as_is(turned, frame)
-    good = other.fits & at_angle(turned.theta, angles, frame)
-    return with_rows(found, again[good], other, good)
+    turned = turn_half(c.take(again), frame.swapped)
+    other = place_as_is(turned, frame)
+    good = other.fits & are_at_angle(turned.theta, angles, frame)
+    return replace_rows(found, again[good], other, good)
 
 
-def with_rows(one: Arranged, rows: IntArray, other: Arranged, chosen: BoolArray) -> Arranged:
+def replace_rows(one: Arranged, rows: IntArray, other: Arranged, chosen: BoolArray) -> Arranged:
     names = [a.name for a in fields(Candidates)]
     candidates = {name: getattr(one.candidates, name).copy() for name in names}
     for name, values in candidates.items():
@@ -86,8 +93,8 @@ def with_rows(one: Arranged, rows: IntArray, other: Arranged, chosen: BoolArray)
     return Arranged(Candidates(**candidates), **moves)
 
 
-def half_turned(c: Candidates, swapped: int) -> Candidates:
-    """Fixtures after half a turn of everything, which swaps the carriers with ``swapped`` pegs each."""
+def turn_half(c: Candidates, swapped: int) -> Candidates:
+    """Return the fixtures after half a turn of everything, which swaps the carriers with ``swapped`` pegs each."""
     column = c.column.copy()
     for carrier in (slice(0, swapped), slice(swapped, 2 * swapped)):
         column[:, carrier] = column[:, carrier].max(axis=1, keepdims=True, initial=0) - column[:, carrier]
@@ -99,7 +106,7 @@ def half_turned(c: Candidates, swapped: int) -> Candidates:
     return Candidates(c.standing, feature, column, row, c.theta + np.pi, point, c.gap, null, force)
 
 
-def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
+def are_bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
     """Return which fixtures' pegs (N,) stand far enough apart for their bodies."""
     clear = np.ones(len(c.standing), np.bool_)
     if all(carrier.body_radius == carrier.peg_radius for carrier in frame.carriers):
@@ -113,42 +120,43 @@ def bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
     return clear
 
 
-def at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
-    """Which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees; in any
-    when there are none."""
+def are_at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
+    """Return which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees;
+    in any when there are none.
+    """
     return np.asarray(lie_in_angle_ranges(np.degrees(theta) + 90.0 * frame.quarters, angles))
 
 
-def free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
+def count_free_columns(c: Candidates, frame: Frame) -> tuple[IntArray, IntArray]:
     """Return how many columns (N,) are free beyond the pegs of each carrier."""
     standing = is_standing(c.standing)
     return (
-        frame.standing.column_count - 1 - largest(np.where(standing, c.column, 0)),
-        frame.moving.column_count - 1 - largest(np.where(standing, 0, c.column)),
+        frame.standing.column_count - 1 - find_largest(np.where(standing, c.column, 0)),
+        frame.moving.column_count - 1 - find_largest(np.where(standing, 0, c.column)),
     )
 
 
-def free_rows(c: Candidates, frame: Frame) -> IntArray:
+def count_free_rows(c: Candidates, frame: Frame) -> IntArray:
     """Return how many rows (N,) are free above the pegs of a carrier with an end; 0 where none has."""
     if all(carrier.rows is None for carrier in frame.carriers):
         return np.zeros(len(c.standing), np.int64)
     ends = np.where(
         is_standing(c.standing), *(np.inf if k.rows is None else k.rows - 1.0 for k in frame.carriers)
     )
-    spare = smallest(ends - c.row)
+    spare = find_smallest(ends - c.row)
     return np.where(np.isinf(spare), 0, spare).astype(np.int64)
 
 
-def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
+def place_as_is(c: Candidates, frame: Frame) -> Arranged:
     pitch, travel = frame.lattice.pitch_x, frame.moving.travel
     assert travel is not None
-    free_standing, free_moving = free_columns(c, frame)
+    free_standing, free_moving = count_free_columns(c, frame)
     at_rest = c.gap + frame.travel_at_rest
     least = np.zeros(len(c.standing), np.int64)
     if travel.most is not None:
         least = np.maximum(np.ceil((at_rest - travel.most - GAP_SLACK) / pitch).astype(np.int64), 0)
     most = np.minimum(free_standing + free_moving, np.floor((at_rest - travel.least + GAP_SLACK) / pitch))
-    spare = free_rows(c, frame)
+    spare = count_free_rows(c, frame)
     fits = (least <= most) & (spare >= 0)
     move_standing = np.minimum(least, free_standing)
     found = Arranged(c, move_standing, least - move_standing, spare // 2, fits)
@@ -159,7 +167,7 @@ def placed_as_is(c: Candidates, frame: Frame) -> Arranged:
 
 
 def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntArray) -> Arranged:
-    """Moves fixtures on until no peg stands in a blocked hole.
+    """Move fixtures on until no peg stands in a blocked hole.
 
     ``room`` (N, 4) has the fewest and most columns outward in all, and the columns free on the standing and
     on the moving carrier. ``spare`` (N,) has the rows free above the topmost peg, where the carriers have an
@@ -171,17 +179,19 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
     out = {name: getattr(found, name).copy() for name in ("standing", "moving", "lift")}
     fits = np.zeros(len(c.standing), np.bool_)
     endless = all(carrier.rows is None for carrier in frame.carriers)
-    for one, two in outward_moves(frame.standing.column_count, frame.moving.column_count):
+    for one, two in list_outward_moves(frame.standing.column_count, frame.moving.column_count):
         if len(open_) == 0:
             break
         least, most, free_standing, free_moving = room[open_].T
         may = (least <= one + two) & (one + two <= most) & (one <= free_standing) & (two <= free_moving)
-        for offset in offsets(frame, endless, spare):
+        for offset in list_row_offsets(frame, endless, spare):
             lift = found.lift[open_] + offset
             inside = may if endless else may & (lift >= 0) & (lift <= spare[open_])
             index, lift = open_[inside], lift[inside]
             shift = np.where(standing[index], (room[index, 2] - one)[:, None], two)
-            free = ~in_blocked(c.column[index] + shift, c.row[index] + lift[:, None], standing[index], frame)
+            free = ~are_in_blocked_holes(
+                c.column[index] + shift, c.row[index] + lift[:, None], standing[index], frame
+            )
             good = index[free]
             out["standing"][good], out["moving"][good], out["lift"][good] = one, two, lift[free]
             fits[good] = True
@@ -190,16 +200,17 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
     return Arranged(c, out["standing"], out["moving"], out["lift"], fits)
 
 
-def outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
-    """Columns to move outward on carriers of so many, the fewest in all first, then the most on the standing
-    one."""
+def list_outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
+    """Yield the columns to move outward on carriers of so many, the fewest in all first, then the most on the
+    standing one.
+    """
     for total in range(standing + moving - 1):
         for two in range(max(0, total - standing + 1), min(total, moving - 1) + 1):
             yield total - two, two
 
 
-def offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
-    """Row shifts beyond the one without blocked holes, in the order they are tried: the smallest first."""
+def list_row_offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
+    """Return the row shifts beyond the one without blocked holes, in the order they are tried: the smallest first."""
     if endless:
         blocked = [
             holes.row for carrier in frame.carriers for holes in carrier.blocked if holes.row is not None
@@ -209,7 +220,7 @@ def offsets(frame: Frame, endless: bool, spare: IntArray) -> list[int]:
     return sorted(range(-most, most + 1), key=lambda shift: (abs(shift), shift))
 
 
-def in_blocked(column: IntArray, row: IntArray, standing: BoolArray, frame: Frame) -> BoolArray:
+def are_in_blocked_holes(column: IntArray, row: IntArray, standing: BoolArray, frame: Frame) -> BoolArray:
     """Return which fixtures (N,) have a peg in a blocked hole; column, row and standing are (N, 4)."""
     hit = np.zeros(column.shape, np.bool_)
     for carrier in frame.carriers:
@@ -220,10 +231,10 @@ def in_blocked(column: IntArray, row: IntArray, standing: BoolArray, frame: Fram
 
 
 def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
-    """Where the clamps of candidates on a plate may be bolted; columns count from the locators' first."""
+    """Return where the clamps of candidates on a plate may be bolted; columns count from the locators' first."""
     frame = problem.frame
     pitch_x, pitch_y = frame.lattice[:2]
-    last_column, last_row = last_holes(frame.toolkit.carriers[0])[:: -1 if frame.quarters % 2 else 1]
+    last_column, last_row = find_last_holes(frame.toolkit.carriers[0])[:: -1 if frame.quarters % 2 else 1]
     last = c.column[:, LOCATOR_CONTACTS].max(axis=1, initial=0)
     along = last * pitch_x + c.gap
     return ClampPlacement(
@@ -244,34 +255,34 @@ def clamp_placement(c: Candidates, problem: Problem) -> ClampPlacement:
     )
 
 
-def placeable(c: Candidates, problem: Problem) -> BoolArray:
+def are_placeable(c: Candidates, problem: Problem) -> BoolArray:
     """Return which candidates (N,) have a place in the toolkit."""
     if problem.frame.moving.on is None:
-        return arranged(c, problem).fits
-    _, fits = clamp_placement(c, problem).nearest(problem)
-    return np.asarray(fits & at_angle(c.theta, problem.restrictions.angles, problem.frame))
+        return arrange_candidates(c, problem).fits
+    _, fits = clamp_placement(c, problem).find_nearest_holes(problem)
+    return np.asarray(fits & are_at_angle(c.theta, problem.restrictions.angles, problem.frame))
 
 
-def placed(c: Candidates, problem: Problem) -> FixtureTable:
+def place_candidates(c: Candidates, problem: Problem) -> FixtureTable:
     """Return the table of candidates that fit; of their quality only the closure margin is known yet."""
     if problem.frame.moving.on is not None:
-        return placed_with_clamp(c, problem)
+        return place_candidates_with_clamp(c, problem)
     frame = problem.frame
-    found = arranged(c, problem)
+    found = arrange_candidates(c, problem)
     c = found.candidates
     standing = is_standing(c.standing)
-    first = free_columns(c, frame)[0] - found.standing
+    first = count_free_columns(c, frame)[0] - found.standing
     column, row = frame.holes(
         standing,
         c.column + np.where(standing, first[:, None], found.moving[:, None]),
         c.row + found.lift[:, None],
     )
-    return table_of(c, problem, column, row, found.travel(frame))
+    return make_table(c, problem, column, row, found.compute_travel(frame))
 
 
-def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
+def place_candidates_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
     frame, placement = problem.frame, clamp_placement(c, problem)
-    hole, _ = placement.nearest(problem)
+    hole, _ = placement.find_nearest_holes(problem)
     column = np.concatenate([c.column[:, LOCATOR_CONTACTS], hole[:, None]], axis=1)
     column, row = (
         numbers - numbers.min(axis=1, keepdims=True, initial=1 << 30)
@@ -284,19 +295,21 @@ def placed_with_clamp(c: Candidates, problem: Problem) -> FixtureTable:
         across, along = frame.toolkit.moving_axis
         x, y = clamp.place(column[:, TIP], row[:, TIP])
         travelled += x * across + y * along
-        (row if axis_of(clamp) else column)[:, TIP] = 0
-    return table_of(c, problem, column, row, travelled)
+        (row if find_axis(clamp) else column)[:, TIP] = 0
+    return make_table(c, problem, column, row, travelled)
 
 
-def table_of(c: Candidates, problem: Problem, column: IntArray, row: IntArray, travel: Array) -> FixtureTable:
-    """The table of candidates in holes of the toolkit, columns and rows (N, 4), with a travel (N,) in mm."""
+def make_table(
+    c: Candidates, problem: Problem, column: IntArray, row: IntArray, travel: Array
+) -> FixtureTable:
+    """Return the table of candidates in holes of the toolkit, columns and rows (N, 4), with a travel (N,) in mm."""
     frame = problem.frame
     theta = c.theta if frame.quarters == 0 else (c.theta + frame.quarters * np.pi / 2) % (2 * np.pi)
     anchor = c.point[:, 0] + np.asarray(problem.workpiece.center)
     anchor = np.stack(rotate_vectors(anchor[:, 0], anchor[:, 1], theta), axis=1)
     hole = frame.toolkit.carriers[0].place(column[:, 0], row[:, 0])
     return FixtureTable(
-        arrangement=frame.toolkit.arrangement_numbers(c.standing).astype(np.int8),
+        arrangement=frame.toolkit.find_arrangement_numbers(c.standing).astype(np.int8),
         column=column.astype(np.int32),
         row=row.astype(np.int32),
         face=problem.faces.astype(np.int32).take(c.feature),
@@ -304,5 +317,5 @@ def table_of(c: Candidates, problem: Problem, column: IntArray, row: IntArray, t
         position=np.stack(hole, axis=1) - anchor,
         jaw_separation=travel,
         force=c.force,
-        quality=make_unknown_quality(smallest(c.null)),
+        quality=make_unknown_quality(find_smallest(c.null)),
     )

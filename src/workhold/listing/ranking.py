@@ -8,7 +8,7 @@ In the usual order a warning counts first. Then steps count, of a tenth each, by
 error is above the least one. That is the least of all fixtures that are fit and without warning, or as near
 to that as any is. Then comes the angle as written, and then the figures. So a place depends on the least
 error, which is known at the end. Parts of a list are kept and left out by what holds whatever it is
-(:meth:`OrderKeys.beaten`):
+(:meth:`OrderKeys.are_beaten`):
 
 - One fixture comes before another one whose effective error is a tenth larger or more, if it is fit and has
   no warning: steps count from an error no larger than either, so that the other has a step more.
@@ -56,17 +56,17 @@ __all__ = [
     "A_STEP",
     "MOST_ERROR",
     "OrderKeys",
-    "best_possible",
-    "billionths",
-    "error_steps",
-    "figure_keys",
-    "in_mm",
+    "make_best_possible_figures",
+    "convert_to_billionths",
+    "count_error_steps",
+    "make_figure_keys",
+    "convert_to_mm",
     "is_worse",
-    "keys_of",
-    "measured",
-    "measured_as",
+    "make_order_keys",
+    "measure_table",
+    "measure_table_as_touched",
     "order_keys",
-    "usual_errors",
+    "find_usual_errors",
 ]
 
 Array = NDArray[np.float64]
@@ -82,14 +82,15 @@ A_STEP = STEP_TENTHS[0] / STEP_TENTHS[1] * (1.0 + 1e-7)
 TOGETHER = 1 << 22
 
 
-def measured(table: FixtureTable, problem: Problem) -> FixtureTable:
+def measure_table(table: FixtureTable, problem: Problem) -> FixtureTable:
     touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
-    return measured_as(table, problem.query, touched)
+    return measure_table_as_touched(table, problem.query, touched)
 
 
-def measured_as(table: FixtureTable, query: Query, touched: Touched) -> FixtureTable:
-    """A table with all its figures of quality; those of closure are as the search found them, to the last
-    digit."""
+def measure_table_as_touched(table: FixtureTable, query: Query, touched: Touched) -> FixtureTable:
+    """Return a table with all its figures of quality; those of closure are as the search found them, to the
+    last digit.
+    """
     quality = measure_quality(
         table,
         query.workpiece,
@@ -128,7 +129,7 @@ class OrderKeys:
         error = None if self.error is None else self.error[chosen]
         return OrderKeys(self.first[chosen], error, self.rest[chosen])
 
-    def followed_by(self, other: OrderKeys) -> OrderKeys:
+    def concatenate(self, other: OrderKeys) -> OrderKeys:
         error = None
         if self.error is not None and other.error is not None:
             error = np.concatenate([self.error, other.error])
@@ -137,7 +138,7 @@ class OrderKeys:
 
     @property
     def width(self) -> int:
-        """How many numbers :meth:`numbers` gives."""
+        """How many numbers :meth:`make_order_numbers` gives."""
         return int(self.first.shape[1] + self.rest.shape[1] + (self.error is not None))
 
     @property
@@ -158,7 +159,7 @@ class OrderKeys:
         error = None if self.error is None else np.full(1, MOST_ERROR)
         return OrderKeys(np.full((1, self.first.shape[1]), inf), error, np.full((1, self.rest.shape[1]), inf))
 
-    def where(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
+    def choose(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
         """Return the keys of those chosen (N,), and other ones of the rest."""
         error = None
         if self.error is not None and other.error is not None:
@@ -168,14 +169,15 @@ class OrderKeys:
         )
         return OrderKeys(first, error, rest)
 
-    def unknown_where(self, chosen: BoolArray) -> OrderKeys:
+    def drop_bounds_where(self, chosen: BoolArray) -> OrderKeys:
         """Return the keys, those chosen (N,) without any bound."""
         error = None if self.error is None else np.where(chosen, 0, self.error)
         first, rest = (np.where(chosen[:, None], -inf, rows) for rows in (self.first, self.rest))
         return OrderKeys(first, error, rest)
 
-    def least_of(self, groups: IntArray) -> OrderKeys:
-        """The least numbers before steps, least error and least numbers after steps, of each of some groups.
+    def find_least_of_groups(self, groups: IntArray) -> OrderKeys:
+        """Return the least numbers before steps, least error and least numbers after steps, of each of some
+        groups.
 
         The groups (N,) are numbered from 0 in ascending order.
         """
@@ -210,43 +212,45 @@ class OrderKeys:
         best = self.first[np.lexsort(self.first.T[::-1])[0]]
         return int(self.error[(self.first == best).all(axis=1)].min())
 
-    def last_fine_error(self, count: int) -> float | None:
-        """The so-manieth least effective error in mm of those fit and without a warning; None where there are
-        fewer."""
+    def find_last_fine_error(self, count: int) -> float | None:
+        """Return the so-manieth least effective error in mm of those fit and without a warning; None where
+        there are fewer.
+        """
         if self.error is None or (errors := self.error[self.is_fine]).size < count:
             return None
         return float(np.partition(errors, count - 1)[count - 1]) / PER_MM
 
-    def numbers(self, least: int | None) -> Array:
-        """Numbers (N, R) to order by, given the least effective error of all."""
+    def make_order_numbers(self, least: int | None) -> Array:
+        """Return the numbers (N, R) to order by, given the least effective error of all."""
         if self.error is None:
             return self.first
-        steps = error_steps(self.error, 0 if least is None else least)
+        steps = count_error_steps(self.error, 0 if least is None else least)
         return np.column_stack([self.first, steps.astype(np.float64), self.rest])
 
     def order(self, least: int | None) -> NDArray[np.intp]:
-        """Best first: the order of fixtures that are given in the order of their identities."""
-        return np.lexsort(self.numbers(least).T[::-1])
+        """Return the best first: the order of fixtures that are given in the order of their identities."""
+        return np.lexsort(self.make_order_numbers(least).T[::-1])
 
-    def kept(self, most: int) -> BoolArray:
-        """Which (N,) may be among the best so many, or tie with the last of them, whatever the least error
-        is."""
+    def are_among_best(self, most: int) -> BoolArray:
+        """Return which (N,) may be among the best so many, or tie with the last of them, whatever the least
+        error is.
+        """
         if len(self) <= most:
             return np.ones(len(self), np.bool_)
         if self.error is None:
             numbers = self.first
             return ~is_worse(numbers, numbers[self.order(None)[most - 1]])
-        rest, first = ranks_of(self.rest), ranks_of(self.first)
+        rest, first = rank_rows(self.rest), rank_rows(self.first)
         out, before = np.zeros(len(self), np.bool_), 0
         for number in range(int(first.max()) + 1):
             if before >= most:
                 break
             there = np.flatnonzero(first == number)
-            out[there] = self.kept_among(there, rest[there], most - before)
+            out[there] = self.are_among_best_of(there, rest[there], most - before)
             before += len(there)
         return out
 
-    def kept_among(self, there: NDArray[np.intp], rest: IntArray, most: int) -> BoolArray:
+    def are_among_best_of(self, there: NDArray[np.intp], rest: IntArray, most: int) -> BoolArray:
         """Return the same of some (T,) that nothing distinguishes before the steps."""
         assert self.error is not None
         error, out = self.error[there], np.ones(len(there), np.bool_)
@@ -271,7 +275,7 @@ class OrderKeys:
         out[chosen] = marks
         return out
 
-    def beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
+    def are_beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
         """Return which (N,) of these bounds so many of some fixtures surely come before.
 
         Parameters
@@ -283,12 +287,12 @@ class OrderKeys:
             return np.zeros(len(self), np.bool_)
         least = kept.least
         if self.error is None or kept.is_known_above(floor):
-            numbers = kept.numbers(least)
-            return is_worse(self.numbers(least), numbers[np.lexsort(numbers.T[::-1])[most - 1]])
-        together = self.followed_by(kept)
+            numbers = kept.make_order_numbers(least)
+            return is_worse(self.make_order_numbers(least), numbers[np.lexsort(numbers.T[::-1])[most - 1]])
+        together = self.concatenate(kept)
         assert together.error is not None
         count = len(self)
-        first, rest, fine = ranks_of(together.first), ranks_of(together.rest), kept.is_fine
+        first, rest, fine = rank_rows(together.first), rank_rows(together.rest), kept.is_fine
         error, errors = self.error, together.error[count:]
         out = np.zeros(count, np.bool_)
         size = max(TOGETHER // len(kept), 1)
@@ -314,8 +318,8 @@ def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
     return np.asarray((ten * error >= eleven * than) & (than > 0))
 
 
-def ranks_of(rows: Array) -> IntArray:
-    """Ranks (N,) of rows (N, K) in lexicographic order, equal ones alike."""
+def rank_rows(rows: Array) -> IntArray:
+    """Return the ranks (N,) of rows (N, K) in lexicographic order, equal ones alike."""
     if len(rows) == 0 or rows.shape[1] == 0:
         return np.zeros(len(rows), np.int64)
     order = np.lexsort(rows.T[::-1])
@@ -327,14 +331,14 @@ def ranks_of(rows: Array) -> IntArray:
     return out
 
 
-def error_steps(error: IntArray, least: int) -> IntArray:
+def count_error_steps(error: IntArray, least: int) -> IntArray:
     """Return how many steps (N,) errors (N,) are above the least of all, both in billionths of a millimetre.
 
     So many numbers j from 1 on have error >= 1.1^j least, in whole numbers.
 
     Examples
     --------
-    >>> error_steps(np.array([100, 109, 110, 121, 122, 90]), 100).tolist()
+    >>> count_error_steps(np.array([100, 109, 110, 121, 122, 90]), 100).tolist()
     [0, 0, 1, 2, 2, 0]
     """
     edges, most = list[int](), int(error.max(initial=0))
@@ -345,29 +349,31 @@ def error_steps(error: IntArray, least: int) -> IntArray:
     return np.searchsorted(np.array(edges, np.int64), error, side="right").astype(np.int64)
 
 
-def billionths(error: Array) -> IntArray:
-    """Errors (N,) in mm as whole billionths; the largest there is for what is no number."""
+def convert_to_billionths(error: Array) -> IntArray:
+    """Return the errors (N,) in mm as whole billionths; the largest there is for what is no number."""
     known = np.minimum(np.where(np.isnan(error), inf, error), MOST_ERROR / PER_MM)
     return np.rint(known * PER_MM).astype(np.int64)
 
 
-def in_mm(error: int | None) -> float | None:
+def convert_to_mm(error: int | None) -> float | None:
     """Return an error in billionths as files have it, in mm."""
     return None if error is None or error >= MOST_ERROR else round(error / PER_MM, FIGURE_DECIMALS)
 
 
-def usual_errors(query: Query) -> EffectiveErrors | None:
+def find_usual_errors(query: Query) -> EffectiveErrors | None:
     """Return what gives effective errors, where these count in the order of a query; else None."""
     return EffectiveErrors.of(query) if query.has_house_order else None
 
 
 def order_keys(table: FixtureTable, query: Query, effective: EffectiveErrors | None) -> OrderKeys:
-    """The keys of a table of fixtures with all its figures; ``effective`` as of :func:`usual_errors`."""
+    """Return the keys of a table of fixtures with all its figures; ``effective`` as of :func:`find_usual_errors`."""
     error = None if effective is None else effective.errors(table)
-    return keys_of(table.quality, query, error, classify_angles(table.theta))
+    return make_order_keys(table.quality, query, error, classify_angles(table.theta))
 
 
-def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle: IntArray) -> OrderKeys:
+def make_order_keys(
+    quality: Array, query: Query, error: Array | IntArray | None, angle: IntArray
+) -> OrderKeys:
     """Return the keys of N fixtures.
 
     Parameters
@@ -378,17 +384,19 @@ def keys_of(quality: Array, query: Query, error: Array | IntArray | None, angle:
     """
     bad = unfit(quality, query.tolerance).astype(np.float64)
     # What is no number counts as the worst there is.
-    figures = [np.where(np.isnan(key), inf, key) for key in figure_keys(quality, query.rank_by)]
+    figures = [np.where(np.isnan(key), inf, key) for key in make_figure_keys(quality, query.rank_by)]
     if error is None:
         return OrderKeys(np.column_stack([bad, *figures]), None, np.zeros((len(bad), 0)))
     first = np.column_stack([bad, quality[:, WARNINGS] > 0.0])
     rest = np.column_stack([angle.astype(np.float64), *figures])
-    whole = error.astype(np.int64) if error.dtype.kind == "i" else billionths(error.astype(np.float64))
+    whole = (
+        error.astype(np.int64) if error.dtype.kind == "i" else convert_to_billionths(error.astype(np.float64))
+    )
     return OrderKeys(first, whole, rest)
 
 
-def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
-    """Numbers (N,) to sort by for the figures of a ranking, the first counting most."""
+def make_figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[NDArray[np.float64]]:
+    """Return the numbers (N,) to sort by for the figures of a ranking, the first counting most."""
     keys, ranking = [], list_ranking_figures(ranking)
     for place, key in enumerate(ranking):
         number = find_ranked_number(key)
@@ -397,13 +405,13 @@ def figure_keys(quality: NDArray[np.float64], ranking: Sequence[str]) -> list[ND
         column = PROGRAM_CLEARANCE if RANKED[number] is PROGRAM_FIGURE else number
         values = np.round(quality[:, column], FIGURE_DECIMALS)
         if place < len(ranking) - 1:
-            values = coarse(values)
+            values = round_coarsely(values)
         keys.append(-values if RANKED[number].more_is_better else values)
     return keys
 
 
-def coarse(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values (N,) to two significant digits; infinite ones as they are."""
+def round_coarsely(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the values (N,) to two significant digits; infinite ones as they are."""
     size = np.abs(values)
     known = np.isfinite(values) & (size > 0.0)
     exponent = np.floor(np.log10(np.where(known, size, 1.0)))
@@ -411,8 +419,8 @@ def coarse(values: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.where(known, np.rint(values / step) * step, values)
 
 
-def best_possible(count: int, query: Query) -> NDArray[np.float64]:
-    """Figures of quality of so many fixtures (N, F), none of any fixture of a query being better.
+def make_best_possible_figures(count: int, query: Query) -> NDArray[np.float64]:
+    """Return the figures of quality of so many fixtures (N, F), none of any fixture of a query being better.
 
     The closure margin is a share of one, so of all pegs at most an equal one, and clamp freedom 90 degrees.
     """

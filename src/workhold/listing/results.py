@@ -19,8 +19,14 @@ from workhold.contact.problem import Problem, Progress
 from workhold.listing.asked import are_as_asked
 from workhold.listing.canonical_form import Candidates
 from workhold.listing.collector import BestFixtures, ResultCollector
-from workhold.listing.identity import Identity, SetCount, identity_order
-from workhold.listing.ranking import OrderKeys, in_mm, measured_as, order_keys, usual_errors
+from workhold.listing.identity import Identity, SetCount, order_by_identity
+from workhold.listing.ranking import (
+    OrderKeys,
+    convert_to_mm,
+    find_usual_errors,
+    measure_table_as_touched,
+    order_keys,
+)
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import STAGES, BestOnly, Cut, LeftUndecided, NoFixture, NoPlace, Note
 from workhold.model.query import Query
@@ -34,13 +40,13 @@ __all__ = [
     "MEASURED",
     "RankedTable",
     "Work",
-    "best_result",
-    "collected_result",
-    "joined_ways",
-    "listed_result",
-    "result_of",
-    "stage",
-    "summed",
+    "make_best_result",
+    "make_collected_result",
+    "join_ways",
+    "list_result",
+    "make_result",
+    "make_stage_progress",
+    "sum_counts",
 ]
 
 # The shares of the work, as progress reports it, that are done when all is decided and when all is measured.
@@ -67,14 +73,14 @@ class Work:
     examined: int | None = None
 
 
-def stage(progress: Progress | None, low: float, high: float) -> Progress | None:
+def make_stage_progress(progress: Progress | None, low: float, high: float) -> Progress | None:
     """Return the progress of one stage of the work, from one fraction of the whole to another."""
     if progress is None:
         return None
     return lambda fraction, found: progress(low + (high - low) * fraction, found)
 
 
-def listed_result(
+def list_result(
     problem: Problem,
     records: list[NDArray[np.float64]],
     work: Work,
@@ -84,7 +90,7 @@ def listed_result(
     threads: int = 1,
     is_part: bool = False,
 ) -> Result:
-    """Check, lists once, ranks and counts the fixtures that an engine found.
+    """Check, lists once, ranks and count the fixtures that an engine found.
 
     Parameters
     ----------
@@ -96,23 +102,23 @@ def listed_result(
     """
     with ThreadPoolExecutor(max_workers=threads) as pool:
         collector = ResultCollector(problem, pool, 2 * threads, cancel, is_part=is_part)
-        with collector.given_up_on_errors():
+        with collector.give_up_on_errors():
             for array in records:
                 collector.take(array)
-            result = collected_result(collector, work, stage(progress, 0.0, MEASURED))
-            result = with_table(result, collector, stage(progress, MEASURED, 1.0))
+            result = make_collected_result(collector, work, make_stage_progress(progress, 0.0, MEASURED))
+            result = add_table(result, collector, make_stage_progress(progress, MEASURED, 1.0))
     return result if is_part else evolve(result, table=result.table.take(slice(0, problem.query.best)))
 
 
-def collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
+def make_collected_result(collector: ResultCollector, work: Work, progress: Progress | None = None) -> Result:
     """Return the result of what a collector was given, without its fixtures; those it hands over.
 
     Parameters
     ----------
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     """
-    account = collector.finish_deciding(stage(progress, 0.0, DECIDED))
-    whole = collector.measure(stage(progress, DECIDED, 1.0))
+    account = collector.finish_deciding(make_stage_progress(progress, 0.0, DECIDED))
+    whole = collector.measure(make_stage_progress(progress, DECIDED, 1.0))
     query = collector.problem.query
     names = [one.name for one in query.toolkit.arrangements]
     found, distinct = (
@@ -126,13 +132,13 @@ def collected_result(collector: ResultCollector, work: Work, progress: Progress 
         complete=work.complete and account.left == 0 and whole,
         notes=(LeftUndecided(len(account.undecided)),) if account.undecided else (),
         statistics=work.statistics,
-        proof=proof_of(account, work),
-        least_effective_error=in_mm(collector.least),
+        proof=make_proof(account, work),
+        least_effective_error=convert_to_mm(collector.least),
     )
 
 
-def with_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
-    tables, listed = list(collector.tables(progress)), collector.listed
+def add_table(result: Result, collector: ResultCollector, progress: Progress | None = None) -> Result:
+    tables, listed = list(collector.iterate_tables(progress)), collector.listed
     # If somebody asked to stop since, millions are not put together any more.
     enough = 1 + int(np.searchsorted(np.cumsum([len(table) for table in tables]), listed))
     table = FixtureTable.joined(tables[:enough]).take(slice(listed))
@@ -140,38 +146,43 @@ def with_table(result: Result, collector: ResultCollector, progress: Progress | 
     return result if len(table) == sum(result.found.values()) else result.cut_short(len(table))
 
 
-def best_result(kept: BestFixtures, work: Work, is_part: bool = False, is_limited: bool = False) -> Result:
-    """The result of a search for the best fixtures only; of a part of one, all that may be among the best.
+def make_best_result(
+    kept: BestFixtures, work: Work, is_part: bool = False, is_limited: bool = False
+) -> Result:
+    """Return the result of a search for the best fixtures only; of a part of one, all that may be among the
+    best.
 
     Where the search ``is_limited``, some were not even looked for. How many fixtures
     there are in all is not known: those that could not be among the best were not examined.
     """
-    candidates, account = kept.finished()
+    candidates, account = kept.finish()
     kept.has_dropped |= is_limited
-    result = result_of(kept.problem, candidates, account, work, is_part)
+    result = make_result(kept.problem, candidates, account, work, is_part)
     if kept.has_dropped and not is_part:
         # Only those that are listed are counted.
         result = evolve(result, table=result.table.take(slice(kept.most)))
         counted = SetCount(Identity(result.toolkit, result.workpiece))
         counted.add(result.table)
         result = evolve(
-            result, found=counted.by_type(counted.found), distinct=counted.by_type(counted.distinct)
+            result,
+            found=counted.count_by_type(counted.found),
+            distinct=counted.count_by_type(counted.distinct),
         )
     if not (work.complete and kept.has_dropped):
         return result
     return evolve(result, notes=(BestOnly(kept.most), *result.notes))
 
 
-def result_of(
+def make_result(
     problem: Problem, candidates: Candidates, account: Account, work: Work, is_part: bool = False
 ) -> Result:
     with ThreadPoolExecutor(max_workers=1) as pool:
         collector = ResultCollector(problem, pool, 1, is_part=is_part)
         collector.add(candidates, account)
-        return with_table(collected_result(collector, work), collector)
+        return add_table(make_collected_result(collector, work), collector)
 
 
-def proof_of(account: Account, work: Work) -> Proof:
+def make_proof(account: Account, work: Work) -> Proof:
     # A pair of chords that was given up counts as one candidate.
     examined = work.examined
     candidates = account.records if examined is None else examined + account.given_up - account.left
@@ -208,7 +219,7 @@ class RankedTable:
     def __attrs_post_init__(self) -> None:
         part, toolkit = self.query.workpiece, self.query.toolkit
         self.touched = Touched.of(part, toolkit, length=self.problem.wrench_length)
-        self.effective = usual_errors(self.query)
+        self.effective = find_usual_errors(self.query)
         self.count = SetCount(Identity(toolkit, part, self.query.listing != "best"))
         self.tables = [FixtureTable.empty(toolkit)]
 
@@ -221,34 +232,36 @@ class RankedTable:
             self.measure()
 
     def measure(self) -> None:
-        """Measures what waits; where only the best are asked for, keeps what may be among them."""
+        """Measure what waits; where only the best are asked for, keeps what may be among them."""
         if not self.waiting:
             return
         query, most, table = self.query, self.query.best, FixtureTable.joined(self.waiting)
         self.waiting = []
-        table = measured_as(table, query, self.touched)
+        table = measure_table_as_touched(table, query, self.touched)
         if query.is_sifted:
             table = table.take(are_as_asked(table, query))
         self.count.add(table)
         self.tables.append(table)
         if most is not None:
-            together = self.together()
+            together = self.concatenate()
             keys = order_keys(together, query, self.effective)
-            chosen = keys.kept(most)
+            chosen = keys.are_among_best(most)
             self.tables, self.known = [together.take(chosen)], keys.take(chosen)
 
-    def keys_of(self, table: FixtureTable) -> OrderKeys:
+    def make_keys(self, table: FixtureTable) -> OrderKeys:
         """Return the keys of some fixtures that are not measured yet."""
-        return order_keys(measured_as(table, self.query, self.touched), self.query, self.effective)
+        return order_keys(
+            measure_table_as_touched(table, self.query, self.touched), self.query, self.effective
+        )
 
     @property
     def keys(self) -> OrderKeys:
         self.measure()
         if self.known is None:
-            return order_keys(self.together(), self.query, self.effective)
+            return order_keys(self.concatenate(), self.query, self.effective)
         return self.known
 
-    def beaten(self, bounds: OrderKeys, floor: int) -> NDArray[np.bool_]:
+    def are_beaten(self, bounds: OrderKeys, floor: int) -> NDArray[np.bool_]:
         """Return which of N bounds are those of nothing that is among the best.
 
         Parameters
@@ -257,23 +270,23 @@ class RankedTable:
         """
         if self.query.best is None:
             return np.zeros(len(bounds), np.bool_)
-        return bounds.beaten(self.keys, self.query.best, floor)
+        return bounds.are_beaten(self.keys, self.query.best, floor)
 
     def rules_out(self, bound: OrderKeys) -> bool:
         """Return whether nothing that has no less than one bound is among the best; it is left out then."""
-        is_out = bool(self.beaten(bound, bound.lowest).all())
+        is_out = bool(self.are_beaten(bound, bound.lowest).all())
         self.has_dropped |= is_out
         return is_out
 
-    def together(self) -> FixtureTable:
+    def concatenate(self) -> FixtureTable:
         """Return what is kept of all that was added, in the order of identities."""
         self.measure()
         everything = FixtureTable.joined(self.tables)
-        self.tables = [everything.take(identity_order(everything, self.query.toolkit))]
+        self.tables = [everything.take(order_by_identity(everything, self.query.toolkit))]
         return self.tables[0]
 
-    def result(self, account: Account, work: Work) -> Result:
-        query, table = self.query, self.together()
+    def make_result(self, account: Account, work: Work) -> Result:
+        query, table = self.query, self.concatenate()
         keys = order_keys(table, query, self.effective)
         order = keys.order(keys.least)[: query.best]
         table, count, notes = table.take(order), self.count, list[Note]()
@@ -287,20 +300,20 @@ class RankedTable:
         return Result(
             query=query,
             table=table,
-            found=count.by_type(count.found),
-            distinct=count.by_type(count.distinct),
+            found=count.count_by_type(count.found),
+            distinct=count.count_by_type(count.distinct),
             complete=work.complete,
             notes=tuple(notes),
             statistics=work.statistics,
-            proof=proof_of(account, work),
-            least_effective_error=in_mm(keys.least),
+            proof=make_proof(account, work),
+            least_effective_error=convert_to_mm(keys.least),
         )
 
 
-def joined_ways(results: Sequence[Result], query: Query) -> Result:
+def join_ways(results: Sequence[Result], query: Query) -> Result:
     """Return the results of all ways of a query's toolkit (``Toolkit.ways``), in their order, as that of the
     query."""
-    table = joined_tables([result.table for result in results])
+    table = join_tables([result.table for result in results])
     # Of a search that was stopped no more than the best of a way may be listed: of all then, too.
     cut = (
         []
@@ -308,32 +321,35 @@ def joined_ways(results: Sequence[Result], query: Query) -> Result:
         else [len(result) for result in results if 0 < len(result) < sum(result.found.values())]
     )
     most = min(cut, default=query.best)
-    keys = order_keys(table, query, usual_errors(query))
+    keys = order_keys(table, query, find_usual_errors(query))
     ranked = table.take(keys.order(keys.least)[:most])
     proofs = [result.proof for result in results if result.proof is not None]
-    found, distinct = (summed(getattr(result, name) for result in results) for name in ("found", "distinct"))
+    found, distinct = (
+        sum_counts(getattr(result, name) for result in results) for name in ("found", "distinct")
+    )
     if any(isinstance(note, BestOnly) for result in results for note in result.notes):
         # Each way left others out than the best of its own, so of all no more are known than the best.
         counted = SetCount(Identity(query.toolkit, query.workpiece))
         counted.add(ranked)
-        found, distinct = counted.by_type(counted.found), counted.by_type(counted.distinct)
+        found, distinct = counted.count_by_type(counted.found), counted.count_by_type(counted.distinct)
     joined = Result(
         query=query,
         table=ranked,
         found=found,
         distinct=distinct,
         complete=all(result.complete for result in results),
-        notes=tuple(joined_notes(results, query)),
-        statistics=summed(result.statistics for result in results),
-        proof=joined_proofs(proofs) if len(proofs) == len(results) else None,
-        least_effective_error=in_mm(keys.least),
+        notes=tuple(join_notes(results, query)),
+        statistics=sum_counts(result.statistics for result in results),
+        proof=join_proofs(proofs) if len(proofs) == len(results) else None,
+        least_effective_error=convert_to_mm(keys.least),
     )
     return joined.cut_short(len(ranked)) if cut else joined
 
 
-def joined_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
-    """The notes of several results as those of all: how many candidates are undecided, or why no result has
-    a fixture. Of several reasons it is the one that most candidates got to."""
+def join_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
+    """Yield the notes of several results as those of all: how many candidates are undecided, or why no result
+    has a fixture. Of several reasons it is the one that most candidates got to.
+    """
     proofs = [result.proof for result in results if result.proof is not None]
     verified, undecided = (
         sum(proof.verified for proof in proofs),
@@ -356,8 +372,8 @@ def joined_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
             yield evolve(last, wording=wording)
 
 
-def joined_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
-    """Tables one after the other, each with one arrangement, which are numbered on."""
+def join_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
+    """Return the tables one after the other, each with one arrangement, which are numbered on."""
     numbered = [
         evolve(table, arrangement=(table.arrangement + number).astype(np.int8))
         for number, table in enumerate(tables)
@@ -365,14 +381,14 @@ def joined_tables(tables: Sequence[FixtureTable]) -> FixtureTable:
     return FixtureTable.joined(numbered)
 
 
-def summed(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
+def sum_counts(counts: Iterable[Mapping[str, int]]) -> dict[str, int]:
     total: Counter[str] = Counter()
     for one in counts:
         total.update({name: int(count) for name, count in one.items()})
     return dict(total)
 
 
-def joined_proofs(proofs: Sequence[Proof]) -> Proof:
+def join_proofs(proofs: Sequence[Proof]) -> Proof:
     return Proof(
         cells=sum(proof.cells for proof in proofs),
         candidates=sum(proof.candidates for proof in proofs),

@@ -29,7 +29,7 @@ import numpy as np
 from attrs import define, field, frozen
 from numpy.typing import NDArray
 
-__all__ = ["Columns", "Runs", "SortedRun", "in_order", "key_of"]
+__all__ = ["Columns", "Runs", "SortedRun", "map_in_order", "make_keys"]
 
 Keys = NDArray[np.bytes_]
 Columns = tuple[NDArray[Any], ...]
@@ -44,9 +44,10 @@ SIGN = np.uint64(1 << 63)
 MOST = (1 << 64) - 1
 
 
-def key_of(*numbers: NDArray[Any]) -> Keys:
-    """Keys (N,) by which rows are in the lexicographic order of numbers (N,) each: whole ones from 0 upward,
-    or floats, of which NaN comes last."""
+def make_keys(*numbers: NDArray[Any]) -> Keys:
+    """Return the keys (N,) by which rows are in the lexicographic order of numbers (N,) each: whole ones from
+    0 upward, or floats, of which NaN comes last.
+    """
     words = np.empty((len(numbers[0]), len(numbers)), ">u8")
     for k, values in enumerate(numbers):
         if values.dtype.kind == "f":
@@ -68,9 +69,9 @@ def order_of(keys: Keys) -> NDArray[np.intp]:
     count = max(len(keys), 1)
     number, size = np.zeros(len(keys), np.uint64), 1
     for column in keys.view(">u8").reshape(len(keys), -1).T if len(keys) else ():
-        word, span = small(column.astype(np.uint64), MOST // (size * count))
+        word, span = compress_numbers(column.astype(np.uint64), MOST // (size * count))
         if size * span * count > MOST:
-            number, size = ranked(number)
+            number, size = rank_numbers(number)
         if size * span * count > MOST:
             return np.argsort(keys, kind="stable")
         number, size = number * np.uint64(span) + word, size * span
@@ -78,15 +79,16 @@ def order_of(keys: Keys) -> NDArray[np.intp]:
     return np.asarray(ordered % np.uint64(count)).astype(np.intp)
 
 
-def small(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]:
-    """Numbers (N,) in the order of others, from 0 upward, and how many there may be: no more than ``most``,
-    or as few as there are different ones."""
+def compress_numbers(word: NDArray[np.uint64], most: int) -> tuple[NDArray[np.uint64], int]:
+    """Return the numbers (N,) in the order of others, from 0 upward, and how many there may be: no more than
+    ``most``, or as few as there are different ones.
+    """
     least = int(word.min())
     span = int(word.max()) - least + 1
-    return (word - np.uint64(least), span) if span <= most else ranked(word)
+    return (word - np.uint64(least), span) if span <= most else rank_numbers(word)
 
 
-def ranked(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
+def rank_numbers(word: NDArray[np.uint64]) -> tuple[NDArray[np.uint64], int]:
     """Return the ranks (N,) of numbers, equal ones alike, and how many there are."""
     values, ranks = np.unique(word, return_inverse=True)
     return ranks.astype(np.uint64), len(values)
@@ -100,16 +102,18 @@ class SortedRun:
     columns: Columns
 
     @classmethod
-    def of(cls, keys: Keys, columns: Columns) -> SortedRun:
+    def from_columns(cls, keys: Keys, columns: Columns) -> SortedRun:
         order = order_of(keys)
         return cls(keys.take(order), tuple(column.take(order, axis=0) for column in columns))
 
     @classmethod
-    def joined(cls, runs: Sequence[SortedRun]) -> SortedRun:
+    def merge_runs(cls, runs: Sequence[SortedRun]) -> SortedRun:
         if len(runs) == 1:
             return runs[0]
         columns = zip(*(run.columns for run in runs), strict=True)
-        return cls.of(np.concatenate([run.keys for run in runs]), tuple(map(np.concatenate, columns)))
+        return cls.from_columns(
+            np.concatenate([run.keys for run in runs]), tuple(map(np.concatenate, columns))
+        )
 
     def __len__(self) -> int:
         return len(self.keys)
@@ -123,7 +127,7 @@ class SortedRun:
         """Return how many of its rows come before a key (1,)."""
         return int(np.searchsorted(self.keys, key)[0])
 
-    def rows(self, first: int, end: int) -> SortedRun:
+    def read_rows(self, first: int, end: int) -> SortedRun:
         return SortedRun(self.keys[first:end], tuple(column[first:end] for column in self.columns))
 
 
@@ -170,7 +174,7 @@ class StoredRun:
     some_keys: Keys
 
     @classmethod
-    def of(cls, run: SortedRun, scratch: Scratch) -> StoredRun:
+    def from_run(cls, run: SortedRun, scratch: Scratch) -> StoredRun:
         arrays = (run.keys, *run.columns)
         places = tuple(scratch.write(array) for array in arrays)
         forms = tuple((array.dtype, array.shape[1:]) for array in arrays)
@@ -179,7 +183,7 @@ class StoredRun:
     def __len__(self) -> int:
         return self.count
 
-    def array(self, number: int, first: int, end: int) -> NDArray[Any]:
+    def read_array(self, number: int, first: int, end: int) -> NDArray[Any]:
         form, shape = self.forms[number]
         size = form.itemsize * int(np.prod(shape, dtype=np.int64))
         content = self.scratch.read(self.places[number] + first * size, (end - first) * size)
@@ -188,10 +192,12 @@ class StoredRun:
     def place(self, key: Keys) -> int:
         """Return how many of its rows come before a key (1,)."""
         first = STRIDE * max(int(np.searchsorted(self.some_keys, key)[0]) - 1, 0)
-        return first + int(np.searchsorted(self.array(0, first, min(first + STRIDE, self.count)), key)[0])
+        return first + int(
+            np.searchsorted(self.read_array(0, first, min(first + STRIDE, self.count)), key)[0]
+        )
 
-    def rows(self, first: int, end: int) -> SortedRun:
-        keys, *columns = (self.array(number, first, end) for number in range(len(self.forms)))
+    def read_rows(self, first: int, end: int) -> SortedRun:
+        keys, *columns = (self.read_array(number, first, end) for number in range(len(self.forms)))
         return SortedRun(keys, tuple(columns))
 
 
@@ -223,30 +229,31 @@ class Runs:
         self.fresh.append(run)
         if self.folder is not None and sum(map(len, self.fresh)) >= ROOM:
             self.scratch = self.scratch or Scratch(self.folder)
-            self.runs.append(StoredRun.of(SortedRun.joined(self.fresh), self.scratch))
+            self.runs.append(StoredRun.from_run(SortedRun.merge_runs(self.fresh), self.scratch))
             self.fresh = []
 
-    def parts(self) -> list[Callable[[], SortedRun]]:
-        """What gives the rows of all runs in the order of their keys, part by part; rows of one key are in
-        one part. At least one, where there is any run."""
+    def list_parts(self) -> list[Callable[[], SortedRun]]:
+        """Return what gives the rows of all runs in the order of their keys, part by part; rows of one key
+        are in one part. At least one, where there is any run.
+        """
         runs = [*self.runs, *self.fresh]
         keys = np.sort(np.concatenate([run.some_keys for run in runs]))
         pivots = np.unique(keys[PART // STRIDE :: PART // STRIDE])
         places = [[run.place(pivots[k : k + 1]) for run in runs] for k in range(len(pivots))]
         edges = [[0] * len(runs), *places, [len(run) for run in runs]]
-        return [self.part(runs, first, end) for first, end in pairwise(edges)]
+        return [self.make_part(runs, first, end) for first, end in pairwise(edges)]
 
-    def each(self) -> Iterator[Callable[[], SortedRun]]:
+    def iterate_runs(self) -> Iterator[Callable[[], SortedRun]]:
         """Yield what gives the rows of each run by itself, which are forgotten here as they are asked for."""
         while self.runs or self.fresh:
             run = (self.runs or self.fresh).pop(0)
-            yield partial(run.rows, 0, len(run))
+            yield partial(run.read_rows, 0, len(run))
 
-    def part(
+    def make_part(
         self, runs: Sequence[SortedRun | StoredRun], first: list[int], end: list[int]
     ) -> Callable[[], SortedRun]:
-        return lambda: SortedRun.joined(
-            [run.rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
+        return lambda: SortedRun.merge_runs(
+            [run.read_rows(low, high) for run, low, high in zip(runs, first, end, strict=True)]
         )
 
     def close(self) -> None:
@@ -256,7 +263,7 @@ class Runs:
             self.scratch.file.close()
 
 
-def in_order(
+def map_in_order(
     pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]
 ) -> Iterator[Other]:
     """Yield what work gives for each item, in the order of the items; so many at a time are begun and not yet

@@ -44,10 +44,10 @@ from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y
 from workhold.kernels.contact import record
 from workhold.kernels.contact.quality import LOAD_LENGTH, figures
 from workhold.kernels.contact.seats import numbers_of_seats
-from workhold.listing.bounds import BOUNDED, first_of_clamps, pair_bounds
-from workhold.listing.canonical_form import NEAR_END, candidates_of, on_each_face
+from workhold.listing.bounds import BOUNDED, bound_pairs, find_first_clamp_figure
+from workhold.listing.canonical_form import NEAR_END, assign_contacts_to_faces, make_candidates
 from workhold.listing.contact_groups import PackedContacts, SeatGroups
-from workhold.listing.ranking import OrderKeys, best_possible, keys_of
+from workhold.listing.ranking import OrderKeys, make_best_possible_figures, make_order_keys
 from workhold.model.clamps import LOCATORS
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import (
@@ -73,7 +73,7 @@ from workhold.statics.effective_error import EffectiveErrors, classify_angles, t
 from workhold.statics.judging import Judging, is_astray, is_near_edge, is_strong
 from workhold.statics.quality import extremes, main_direction, measure_faces, tilts
 
-__all__ = ["ordered_groups"]
+__all__ = ["make_ordered_groups"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -100,10 +100,10 @@ NO_CONTACT = np.iinfo(np.int64).max
 ROUNDS = 3
 
 
-def ordered_groups(
+def make_ordered_groups(
     records: Sequence[PackedContacts], problems: Sequence[Problem], query: Query
 ) -> SeatGroups:
-    """Groups of the contacts of each direction.
+    """Return the groups of the contacts of each direction.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def ordered_groups(
     numbers = [
         seat_numbers(some, problem)
         for part, problem in zip(records, problems, strict=True)
-        for some in part.parts()
+        for some in part.iterate_parts()
     ]
     holes, theta, turn, place, off, holds = (np.concatenate(parts) for parts in zip(*numbers, strict=True))
     del numbers
@@ -135,9 +135,9 @@ def ordered_groups(
     known = (theta, turn), (place, off)
     bounds = group_bounds(order, group, known, records, problems, query)
     unknown = loose | ~(off <= SAME_PLACE)
-    bounds = bounds.unknown_where(np.logical_or.reduceat(unknown[order], starts))
-    groups, alike = SeatGroups(order, starts, bounds), first_of_clamps(query)
-    groups = groups.followed_by(np.flatnonzero(~holds))
+    bounds = bounds.drop_bounds_where(np.logical_or.reduceat(unknown[order], starts))
+    groups, alike = SeatGroups(order, starts, bounds), find_first_clamp_figure(query)
+    groups = groups.append_group(np.flatnonzero(~holds))
     if alike is None:
         return groups
 
@@ -158,7 +158,8 @@ def group_bounds(
     query: Query,
     by_pairs: bool = False,
 ) -> OrderKeys:
-    """The keys of G groups that no fixture in one has less than, the least of those of the places in it.
+    """Return the keys of G groups that no fixture in one has less than, the least of those of the places in
+    it.
 
     Numbers of contacts (M,) come group by group, and in each by place, with those of the groups. ``known``
     are orientations and places (M,), each with how far they may be off. ``by_pairs`` says whether pairs of
@@ -168,27 +169,27 @@ def group_bounds(
     fresh = np.ones(len(order), np.bool_)
     fresh[1:] = (np.diff(group) > 0) | (np.diff(place) > SAME_PLACE)
     starts = np.flatnonzero(fresh)
-    first = best_known(order, off, starts)
+    first = find_best_known(order, off, starts)
     edges = np.cumsum([0, *map(len, records)])
     direction = np.searchsorted(edges, first, side="right") - 1
     parts, places = list[OrderKeys](), list[IntArray]()
-    pairs = pair_bounds(order, starts, records, problems, query) if by_pairs else None
+    pairs = bound_pairs(order, starts, records, problems, query) if by_pairs else None
     for number, (part, problem) in enumerate(zip(records, problems, strict=True)):
         chosen = np.flatnonzero(direction == number)
         known_within = known[1][1][first[chosen]]
         some, of_pairs = part.take(first[chosen] - edges[number]), None if pairs is None else pairs[chosen]
-        parts.append(keys_bounding(some, known_within, problem, query, of_pairs))
+        parts.append(bound_keys(some, known_within, problem, query, of_pairs))
         places.append(chosen)
-    bounds = reduce(OrderKeys.followed_by, parts).take(np.argsort(np.concatenate(places), kind="stable"))
+    bounds = reduce(OrderKeys.concatenate, parts).take(np.argsort(np.concatenate(places), kind="stable"))
     for values, doubts in known:
         middle, radius = values[order], 2.0 * doubts[order]
         low, high = np.minimum.reduceat(middle + radius, starts), np.maximum.reduceat(middle - radius, starts)
         # One contact cannot stand for two seats.
-        bounds = bounds.unknown_where(high - low > APART)
-    return bounds.least_of(group[starts])
+        bounds = bounds.drop_bounds_where(high - low > APART)
+    return bounds.find_least_of_groups(group[starts])
 
 
-def best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
+def find_best_known(order: IntArray, off: Array, starts: IntArray) -> IntArray:
     """Return the lowest of numbers (M,) in an order that are off the least, of each place (G,)."""
     least = np.repeat(np.minimum.reduceat(off, starts), np.diff(starts, append=len(off)))
     return np.asarray(np.minimum.reduceat(np.where(off <= least, order, NO_CONTACT), starts))
@@ -216,15 +217,16 @@ def seat_numbers(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
     pitch = np.array(problem.toolkit.carriers[0].pitch, np.float64)
     numbers_of_seats(records, quarters, pitch, START, holes, theta, place)
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH])
-    off, holds = places_off(records, problem), np.ones(count, np.bool_)
+    off, holds = bound_places_off(records, problem), np.ones(count, np.bool_)
     vague = np.flatnonzero(~(off <= SAME_PLACE))
     if len(vague):
         holds[vague] = ~hold_nothing(records[vague], problem)
     return holes, theta, turn, place, off, holds
 
 
-def places_off(records: Array, problem: Problem) -> Array:
-    """How far (N,) centres of locators may be off in mm, in contacts (N, 19) that know it of all pegs alike.
+def bound_places_off(records: Array, problem: Problem) -> Array:
+    """Return how far (N,) centres of locators may be off in mm, in contacts (N, 19) that know it of all pegs
+    alike.
 
     Where a clamp grazes an arc, it is known badly, but the locators fix the part. Say their centres are
     within r of where they belong. Then each is off the tangent there by no more than r^2 (1/R + 1/L) and its
@@ -233,7 +235,7 @@ def places_off(records: Array, problem: Problem) -> Array:
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH] * problem.wrench_length)
     off = np.asarray(records[:, record.LARGEST_RADIUS] + turn)
     vague = np.flatnonzero((off > SAME_PLACE) & (off < inf))
-    c = candidates_of(records[vague], problem)
+    c = make_candidates(records[vague], problem)
     rows, point = problem.rows[c.feature[:, :LOCATORS]], c.point[:, :LOCATORS]
     radius = np.where(rows[..., IS_ARC] != 0.0, rows[..., RADIUS], inf)
     across, along = point[..., 0] - rows[..., X], point[..., 1] - rows[..., Y]
@@ -254,40 +256,41 @@ def places_off(records: Array, problem: Problem) -> Array:
     return off
 
 
-def keys_bounding(
+def bound_keys(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> OrderKeys:
-    """Keys that no fixture has less than whose locators touch as those of records (N, 19) do.
+    """Return the keys that no fixture has less than whose locators touch as those of records (N, 19) do.
 
     A contact at a joint may be listed on either face; what is less counts. Places may be ``off`` by so many mm
     (N,); ``pairs`` (N, 3) are bounds of the pairs of clamps, None where they are not known.
     """
-    number, records = on_each_face(records, problem, LOCATORS)
+    number, records = assign_contacts_to_faces(records, problem, LOCATORS)
     off, pairs = off[number], None if pairs is None else pairs[number]
-    quality = best_figures(records, off, problem, query, pairs)
-    theta = seen_angles(records, problem)
+    quality = bound_figures(records, off, problem, query, pairs)
+    theta = compute_seen_angles(records, problem)
     error = (
-        quality[:, LOCATION_ERROR] * least_factors(records, off, problem, query)
+        quality[:, LOCATION_ERROR] * bound_error_factors(records, off, problem, query)
         if query.has_house_order
         else None
     )
-    keys = keys_of(quality, query, error, classify_angles(theta, ANGLE))
-    return keys.unknown_where(np.isnan(quality[:, LOCATION_ERROR])).least_of(number)
+    keys = make_order_keys(quality, query, error, classify_angles(theta, ANGLE))
+    return keys.drop_bounds_where(np.isnan(quality[:, LOCATION_ERROR])).find_least_of_groups(number)
 
 
-def seen_angles(records: Array, problem: Problem) -> Array:
-    """Orientations (N,) of the part on the plate in radians."""
+def compute_seen_angles(records: Array, problem: Problem) -> Array:
+    """Return the orientations (N,) of the part on the plate in radians."""
     return np.asarray(problem.frame.quarters * (pi / 2) - records[:, record.PSI])
 
 
-def least_factors(records: Array, off: Array, problem: Problem, query: Query) -> Array:
-    """Factors (N,) of the location error that are no larger than those of a fixture with these locators.
+def bound_error_factors(records: Array, off: Array, problem: Problem, query: Query) -> Array:
+    """Return the factors (N,) of the location error that are no larger than those of a fixture with these
+    locators.
 
     What the clamps do, and whether the part hangs over, can only make them larger.
     """
-    effective, c = EffectiveErrors.of(query), candidates_of(records, problem)
+    effective, c = EffectiveErrors.of(query), make_candidates(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
-    angle = classify_angles(seen_angles(records, problem), ANGLE)
+    angle = classify_angles(compute_seen_angles(records, problem), ANGLE)
     points = c.point[:, :LOCATORS] + np.asarray(problem.workpiece.center)
     place = 4.0 * SAME_PLACE + 16.0 * off
     near = to_ends(points, effective.lines[faces]) < query.toolkit.carriers[0].peg_radius - place[:, None]
@@ -301,15 +304,15 @@ def least_factors(records: Array, off: Array, problem: Problem, query: Query) ->
     return np.asarray(np.prod(times, axis=0))
 
 
-def best_figures(
+def bound_figures(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> Array:
-    """Figures of quality (N, F), none of a fixture with these locators being better.
+    """Return the figures of quality (N, F), none of a fixture with these locators being better.
 
     NaN stands where nothing is known.
     """
     touched = Touched.of(problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length)
-    c = candidates_of(records, problem)
+    c = make_candidates(records, problem)
     faces = problem.faces[c.feature[:, :LOCATORS]].astype(np.int64)
     found = touched.locators(np.ascontiguousarray(c.point[:, :LOCATORS]), faces)
     out = np.empty((len(records), len(FIGURES)))
@@ -344,9 +347,9 @@ def best_figures(
     known = (share < MOST_SHARE) & (place < 2.0 * NEAR_END)
     error = out[:, LOCATION_ERROR] * (1.0 - share)
     end, edge = (np.min(values, axis=1, initial=inf) + place for values in (ends, edges))
-    out = best_possible(len(records), query)
+    out = make_best_possible_figures(len(records), query)
     out[:, END_DISTANCE], out[:, EDGE_DISTANCE] = end, np.minimum(edge, touched.length)
-    tilt = tilts(seen_angles(records, problem), main_direction(problem.workpiece))
+    tilt = tilts(compute_seen_angles(records, problem), main_direction(problem.workpiece))
     out[:, TILT] = np.where(tilt < SQUARE_TILT + ANGLE, 0.0, tilt - ANGLE)
     out[:, SMALLEST_FACE] = measure_faces(problem.workpiece).take(faces).min(axis=1, initial=inf)
     out[:, LOCATION_ERROR] = np.where(known, error, np.nan)

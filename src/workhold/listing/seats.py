@@ -39,11 +39,18 @@ from workhold.kernels.contact.clamp_pairs import (
     pairs_of,
 )
 from workhold.listing.asked import are_precise
-from workhold.listing.canonical_form import are_lowest, changes, clusters, packed
-from workhold.listing.clamp_contacts import ClampContacts, box_beside
-from workhold.listing.clamp_placement import DIRECTION_NAMES, FAR, OPENING, is_bolted, is_upright, last_holes
-from workhold.listing.identity import half_turns
-from workhold.listing.ranking import measured_as
+from workhold.listing.canonical_form import are_lowest, mark_changes, pack_integers, split_into_clusters
+from workhold.listing.clamp_contacts import ClampContacts, make_box_beside
+from workhold.listing.clamp_placement import (
+    DIRECTION_NAMES,
+    FAR,
+    OPENING,
+    find_last_holes,
+    is_bolted,
+    is_upright,
+)
+from workhold.listing.identity import allows_half_turns
+from workhold.listing.ranking import measure_table_as_touched
 from workhold.listing.results import RankedTable, Work
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.quality import CLAMP_FREEDOM
@@ -55,7 +62,7 @@ from workhold.proof.deciding import BALLS, Account
 if TYPE_CHECKING:
     from workhold.proof.ball_contacts import CandidateBox
 
-__all__ = ["ClampedSeats", "Seats", "seats_of", "undecided_pairs"]
+__all__ = ["ClampedSeats", "Seats", "make_seats", "list_undecided_pairs"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -96,7 +103,7 @@ class Seats:
         return np.stack([self.column.max(axis=1, initial=0), self.row.max(axis=1, initial=0)], axis=1)
 
 
-def seats_of(
+def make_seats(
     parts: Sequence[ClampContacts],
     problem: Problem,
     within: Sequence[tuple[float, float]] = ((-inf, inf),),
@@ -112,12 +119,12 @@ def seats_of(
         wanted; others are left out, whole.
     is_limited : whether contacts were found up to a limit of the location error.
     """
-    found = ClampContacts.joined(parts)
-    words = packed((found.column, found.column.max(initial=0)), (found.row, found.row.max(initial=0)))
+    found = ClampContacts.concatenate(parts)
+    words = pack_integers((found.column, found.column.max(initial=0)), (found.row, found.row.max(initial=0)))
     order = np.lexsort(words[::-1])
     place = (found.point + found.start) @ np.array([1.0, 0.7548776662])
-    order, fresh = clusters(
-        order, changes([word[order] for word in words]), (found.theta, SAME_POSE), (place, SAME_PLACE)
+    order, fresh = split_into_clusters(
+        order, mark_changes([word[order] for word in words]), (found.theta, SAME_POSE), (place, SAME_PLACE)
     )
     seat = np.empty(len(order), np.int64)
     seat[order] = np.cumsum(fresh) - 1
@@ -143,15 +150,16 @@ def seats_of(
         theta=theta[wanted],
         point=found.point[first],
         start=found.start[first],
-        **clamps_of(found, number[seat], len(first), problem),
+        **make_clamp_columns(found, number[seat], len(first), problem),
     )
 
 
-def clamps_of(found: ClampContacts, seat: IntArray, count: int, problem: Problem) -> dict[str, Any]:
-    """The clamps of seats, each once, in the order of seats, directions, lines and features; ``seat`` (M,) is
-    -1 for contacts that are left out."""
+def make_clamp_columns(found: ClampContacts, seat: IntArray, count: int, problem: Problem) -> dict[str, Any]:
+    """Return the clamps of seats, each once, in the order of seats, directions, lines and features; ``seat``
+    (M,) is -1 for contacts that are left out.
+    """
     chosen = np.flatnonzero(seat >= 0)
-    words = packed(
+    words = pack_integers(
         (seat[chosen, None], max(count, 1)),
         (found.direction[chosen, None], len(DIRECTION_NAMES)),
         (
@@ -161,7 +169,9 @@ def clamps_of(found: ClampContacts, seat: IntArray, count: int, problem: Problem
     )
     along = np.where(is_upright(found.direction), found.tip[:, 1], found.tip[:, 0])[chosen]
     order = np.lexsort(words[::-1])
-    order, fresh = clusters(order, changes([word[order] for word in words]), (along, SAME_PLACE))
+    order, fresh = split_into_clusters(
+        order, mark_changes([word[order] for word in words]), (along, SAME_PLACE)
+    )
     clamp = np.empty(len(order), np.int64)
     clamp[order] = np.cumsum(fresh) - 1
     # Of a tip at a joint the feature of the lowest number; then clamps by their features, and where they
@@ -226,7 +236,7 @@ class ClampedSeats:
             kinds[DIRECTION_NAMES.index(one), DIRECTION_NAMES.index(other)] = number
         clamp = self.problem.toolkit.moving
         self.hardware = Hardware(
-            kinds, 2 * clamp.peg_radius, *last_holes(self.toolkit.carriers[0]), is_bolted(clamp)
+            kinds, 2 * clamp.peg_radius, *find_last_holes(self.toolkit.carriers[0]), is_bolted(clamp)
         )
 
     def __len__(self) -> int:
@@ -234,9 +244,9 @@ class ClampedSeats:
 
     @property
     def turns_half(self) -> bool:
-        return half_turns(self.toolkit)
+        return allows_half_turns(self.toolkit)
 
-    def half_of(self, seats: Seats) -> IntArray:
+    def mark_paired_seats(self, seats: Seats) -> IntArray:
         """Return which seats (S,) are paired: 1 for those that are, else 0.
 
         Of opposite directions half a turn makes one fixture another, so that only one half turn of seats is
@@ -247,43 +257,43 @@ class ClampedSeats:
     def count(self, seats: Seats) -> int:
         """Return how many fixtures seats have, as they are listed; pairs that hardly close count as well."""
         every = self.query.listing == "all"
-        rows = pairs_of(seats.spans, self.half_of(seats), seats.clamps, self.hardware, every)
+        rows = pairs_of(seats.spans, self.mark_paired_seats(seats), seats.clamps, self.hardware, every)
         if every:
             return int(rows[:, COUNT].sum())
-        return self.held_in(rows)
+        return self.count_held_seats(rows)
 
-    def held_in(self, rows: Array) -> int:
+    def count_held_seats(self, rows: Array) -> int:
         """Return how many seats, by pair of directions, are held in pairs (N, 10)."""
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 
     def add(self, seats: Seats) -> None:
         self.looked_at += len(seats)
-        half, every = self.half_of(seats), self.query.listing == "all"
+        half, every = self.mark_paired_seats(seats), self.query.listing == "all"
         rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
         if self.turns_half and (rows[:, OPEN] != 0.0).any():
             if self.query.best is not None and not every:
-                rows = self.of_interest(rows, seats)
+                rows = self.select_of_interest(rows, seats)
                 kept = np.zeros(len(seats), np.bool_)
                 kept[rows[:, SEAT].astype(np.int64)] = True
                 half[~kept] = -1
-            seats = self.sharpened(seats, rows[rows[:, OPEN] != 0.0])
+            seats = self.sharpen_seats(seats, rows[rows[:, OPEN] != 0.0])
             rows = pairs_of(seats.spans, half, seats.clamps, self.hardware, every)
-        rows = self.precise(rows, seats)
+        rows = self.select_precise(rows, seats)
         is_open = rows[:, OPEN] != 0.0
-        self.undecided += undecided_pairs(self.table_of(rows[is_open], seats), self.toolkit)
+        self.undecided += list_undecided_pairs(self.make_table(rows[is_open], seats), self.toolkit)
         rows = rows[~is_open]
         self.pairs += int(rows[:, COUNT].sum())
-        self.seats += self.held_in(rows)
-        self.ranked.add(self.table_of(rows, seats))
+        self.seats += self.count_held_seats(rows)
+        self.ranked.add(self.make_table(rows, seats))
 
-    def precise(self, rows: Array, seats: Seats) -> Array:
-        """The pairs (N, 10) at seats with no larger location error than asked, which is that of the locators."""
+    def select_precise(self, rows: Array, seats: Seats) -> Array:
+        """Return the pairs (N, 10) at seats with no larger location error than asked, which is that of the locators."""
         if self.query.max_location_error is None or not len(rows):
             return rows
-        table = measured_as(self.table_of(rows, seats), self.query, self.ranked.touched)
+        table = measure_table_as_touched(self.make_table(rows, seats), self.query, self.ranked.touched)
         return np.asarray(rows[are_precise(table, self.query)])
 
-    def of_interest(self, rows: Array, seats: Seats) -> Array:
+    def select_of_interest(self, rows: Array, seats: Seats) -> Array:
         """Return the pairs (N, 10) of seats that may be among the best.
 
         A pair that is open hardly closes. So it has a warning, and is not the best of a seat that has
@@ -293,14 +303,14 @@ class ClampedSeats:
         known, has_one = rows[~is_open], np.zeros(len(seats), np.bool_)
         has_one[seat[~is_open]] = True
         wanted = ~has_one & (not self.is_limited)
-        wanted[seat[~is_open][~self.ranked.beaten(self.ranked.keys_of(self.table_of(known, seats)), 0)]] = (
-            True
-        )
+        wanted[
+            seat[~is_open][~self.ranked.are_beaten(self.ranked.make_keys(self.make_table(known, seats)), 0)]
+        ] = True
         self.ranked.has_dropped |= not wanted[seat].all()
         return rows[wanted[seat]]
 
-    def sharpened(self, seats: Seats, rows: Array) -> Seats:
-        """Seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
+    def sharpen_seats(self, seats: Seats, rows: Array) -> Seats:
+        """Return the seats whose clamps of some pairs (N, 10) have their reactions to the last digit."""
         from workhold.proof.exact_contacts import bound_reactions
 
         reals = seats.clamps.reals.copy()
@@ -308,16 +318,17 @@ class ClampedSeats:
             for seat, clamp in sorted(
                 {(int(row[SEAT]), int(row[CLAMPS + k])) for row in rows for k in range(2)}
             ):
-                sharp = bound_reactions(self.box(seats, seat, clamp), self.problem.limits)
+                sharp = bound_reactions(self.make_candidate_box(seats, seat, clamp), self.problem.limits)
                 if sharp is not None:
                     reals[clamp, TAKEN : TAKEN + 3], reals[clamp, DOUBT] = sharp.taken, sharp.doubt
         return evolve(seats, clamps=seats.clamps._replace(reals=reals))
 
-    def box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
-        """A seat and one of its clamps as contacts in the frame in which the clamp's travel is counted along
-        x."""
+    def make_candidate_box(self, seats: Seats, seat: int, clamp: int) -> CandidateBox:
+        """Return a seat and one of its clamps as contacts in the frame in which the clamp's travel is counted
+        along x.
+        """
         pitch, integers = np.array(self.toolkit.carriers[0].pitch), seats.clamps.integers[clamp]
-        carrier = self.toolkit.carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
+        carrier = self.toolkit.find_carrier(f"clamp {DIRECTION_NAMES[integers[DIRECTION]]}")
         assert carrier.travel is not None
         cosine, sine = carrier.travel.unit
         turn = np.array([[cosine, sine], [-sine, cosine]])
@@ -328,16 +339,17 @@ class ClampedSeats:
         )
         x, y = (seats.point[seat] - self.problem.workpiece.center).tolist()
         features = [*seats.feature[seat], seats.clamp_feature[clamp]]
-        offsets = [*map(tuple, places.tolist()), (0.0, line_of(integers, holes[0], pitch, turn))]
+        offsets = [*map(tuple, places.tolist()), (0.0, compute_line_height(integers, holes[0], pitch, turn))]
         middle = carrier.travel.direction - float(seats.theta[seat]), x, y, float(tip[0])
-        return box_beside(features, offsets, middle, self.problem)
+        return make_box_beside(features, offsets, middle, self.problem)
 
-    def table_of(self, rows: Array, seats: Seats) -> FixtureTable:
-        """Pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom are
-        known."""
+    def make_table(self, rows: Array, seats: Seats) -> FixtureTable:
+        """Return the pairs (N, 10) in holes of the plate; of their quality closure margin and clamp freedom
+        are known.
+        """
         seat, clamp = rows[:, SEAT].astype(np.int64), rows[:, [CLAMPS, CLAMPS + 1]].astype(np.int64)
         direction, reals = seats.clamps.integers[clamp, DIRECTION], seats.clamps.reals[clamp]
-        plate, (column, row, lowest) = self.toolkit.carriers[0], self.holes_of(rows, seats)
+        plate, (column, row, lowest) = self.toolkit.carriers[0], self.find_holes(rows, seats)
         at = np.stack([column, row], axis=2) * np.array(plate.pitch) + np.array(plate.offset)
         tip = reals[..., TIP : TIP + 2] - (lowest * np.array(plate.pitch))[:, None]
         push, force = reals[..., PUSH], np.zeros((len(rows), 5, 2))
@@ -362,9 +374,10 @@ class ClampedSeats:
             pairs=rows[:, COUNT].astype(np.int32),
         )
 
-    def holes_of(self, rows: Array, seats: Seats) -> tuple[IntArray, IntArray, IntArray]:
-        """Columns and rows (N, 5) of pairs (N, 10), and the lowest of each (N, 2) as seats and clamps count
-        them."""
+    def find_holes(self, rows: Array, seats: Seats) -> tuple[IntArray, IntArray, IntArray]:
+        """Return the columns and rows (N, 5) of pairs (N, 10), and the lowest of each (N, 2) as seats and
+        clamps count them.
+        """
         seat, clamp, bolted = (
             rows[:, columns].astype(np.int64) for columns in (SEAT, [CLAMPS, CLAMPS + 1], [HOLES, HOLES + 1])
         )
@@ -392,13 +405,13 @@ class ClampedSeats:
         )
         return column, row, lowest
 
-    def result(self, account: Account, work: Work) -> Result:
+    def make_result(self, account: Account, work: Work) -> Result:
         account = evolve(account, undecided=(*account.undecided, *self.undecided))
-        result = self.ranked.result(account, work)
+        result = self.ranked.make_result(account, work)
         return result if self.ranked.has_dropped else evolve(result, pairs=self.pairs, seats=self.seats)
 
 
-def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
+def list_undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
     columns = table.arrangement, table.face, table.column, table.row, np.degrees(table.theta) % 360.0
     return [
         Undecided(
@@ -408,9 +421,10 @@ def undecided_pairs(table: FixtureTable, toolkit: Toolkit) -> list[Undecided]:
     ]
 
 
-def line_of(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
-    """The height in mm of a clamp's line above the first locator (2,), in the frame that ``turn`` (2, 2)
-    leads to."""
+def compute_line_height(integers: IntArray, first: Array, pitch: Array, turn: Array) -> float:
+    """Return the height in mm of a clamp's line above the first locator (2,), in the frame that ``turn`` (2,
+    2) leads to.
+    """
     upright = bool(is_upright(integers[DIRECTION]))
     away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]
     return float(turn[1] @ ((away, 0.0) if upright else (0.0, away)))

@@ -16,10 +16,10 @@ from workhold.contact.problem import Problem
 from workhold.conventions import SAME_PLACE
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.listing.canonical_form import Rows
-from workhold.listing.clamp_placement import ClampPlacement, axis_of, is_bolted, last_holes
+from workhold.listing.clamp_placement import ClampPlacement, find_axis, find_last_holes, is_bolted
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 
-__all__ = ["WallFixtures", "first_of_each", "placed_on_wall", "turned", "wall_table"]
+__all__ = ["WallFixtures", "find_first_of_each", "place_on_wall", "turn_points", "make_wall_table"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -58,18 +58,19 @@ class WallFixtures(Rows):
         """No doubt."""
         return np.zeros(len(self.edge))
 
-    def listed_once(self) -> WallFixtures:
-        """One of the fixtures that are the same: a contact at a tangent joint is found on both features that
-        meet there."""
+    def list_each_once(self) -> WallFixtures:
+        """Return one of the fixtures that are the same: a contact at a tangent joint is found on both
+        features that meet there.
+        """
         place = self.locator[:, 0] + self.tip @ np.array([0.7548776662, 0.5698402910])
-        return self.take(first_of_each((self.edge, self.row, self.line), place, self.feature))
+        return self.take(find_first_of_each((self.edge, self.row, self.line), place, self.feature))
 
-    def placement(self, problem: Problem) -> ClampPlacement:
+    def make_clamp_placement(self, problem: Problem) -> ClampPlacement:
         """Return where the clamps may be bolted; columns count from the locator's."""
         plate, clamp, flush = problem.toolkit.carriers[0], problem.toolkit.moving, problem.workpiece.flush
         assert clamp.travel is not None
-        columns, rows = last_holes(plate)
-        axis, theta, count = axis_of(clamp), flush.theta[self.edge], len(self)
+        columns, rows = find_last_holes(plate)
+        axis, theta, count = find_axis(clamp), flush.theta[self.edge], len(self)
         on_line = (np.abs(self.line) <= columns) if axis else (self.line <= rows)
         return ClampPlacement(
             clamp,
@@ -82,18 +83,21 @@ class WallFixtures(Rows):
             first=np.full(count, 0.0 if axis else -columns),
             last=np.full(count, rows if axis else columns),
             fits=on_line & (self.row <= rows),
-            seen=flush.ends[self.edge, 0] - np.array(problem.workpiece.center) + turned(self.tip, -theta),
+            seen=flush.ends[self.edge, 0]
+            - np.array(problem.workpiece.center)
+            + turn_points(self.tip, -theta),
             theta=theta,
         )
 
 
-def first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
-    """The first, by its features, of the fixtures that agree in whole numbers and in place, as their numbers.
+def find_first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) -> IntArray:
+    """Return the first, by its features, of the fixtures that agree in whole numbers and in place, as their
+    numbers.
 
     Parameters
     ----------
     columns : whole numbers (N,) that name fixtures.
-    place : (N,) one number that mixes all places, as in ``canonical_form.listed_once``.
+    place : (N,) one number that mixes all places, as in ``canonical_form.list_each_once``.
     feature : (N, 2) touched.
     """
     order = np.lexsort([place, *columns[::-1]])
@@ -105,25 +109,26 @@ def first_of_each(columns: Sequence[IntArray], place: Array, feature: IntArray) 
     return np.asarray(order[best[np.diff(run[best], prepend=0) > 0]])
 
 
-def turned(points: Array, angle: Array) -> Array:
-    """Points (N, 2) turned by angles (N,)."""
+def turn_points(points: Array, angle: Array) -> Array:
+    """Return the points (N, 2) turned by angles (N,)."""
     return np.stack(rotate_vectors(points[:, 0], points[:, 1], angle), axis=1)
 
 
-def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> FixtureTable:
-    """The table of fixtures whose clamps are in these holes (N,); of their quality only the closure margin is
-    known yet."""
+def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> FixtureTable:
+    """Return the table of fixtures whose clamps are in these holes (N,); of their quality only the closure
+    margin is known yet.
+    """
     clamp, flush, count = problem.toolkit.moving, problem.workpiece.flush, len(found)
     column, row = np.zeros((count, 4), np.int32), np.zeros((count, 4), np.int32)
     row[:, 0] = found.row
-    column[:, 3], row[:, 3] = (found.line, hole) if axis_of(clamp) else (hole, found.line)
+    column[:, 3], row[:, 3] = (found.line, hole) if find_axis(clamp) else (hole, found.line)
     # The lowest column is 0; where the clamp has no hole, its place is counted from there.
     column[:, [0, 3]] -= np.minimum(column[:, [0]], column[:, [3]])
-    if axis_of(clamp) == 0 and not is_bolted(clamp):
+    if find_axis(clamp) == 0 and not is_bolted(clamp):
         column[:, 3] = 0
     across = column[:, 0] * clamp.pitch[0] - found.locator[:, 0]
     theta = flush.theta[found.edge]
-    position = np.stack([across, np.zeros(count)], axis=1) - turned(flush.ends[found.edge, 0], theta)
+    position = np.stack([across, np.zeros(count)], axis=1) - turn_points(flush.ends[found.edge, 0], theta)
     x, y = clamp.place(column[:, 3], row[:, 3])
     unit = clamp.travel.unit if clamp.travel is not None else (0.0, 0.0)
     # The locator is listed before the ends of the wall, the clamp after them.
@@ -144,8 +149,8 @@ def wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fixture
     )
 
 
-def placed_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
+def place_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
     """Return the table of the fixtures whose clamps have a place, each once."""
-    found = found.listed_once()
-    hole, fits = found.placement(problem).nearest(problem)
-    return wall_table(found.take(fits), hole[fits], problem)
+    found = found.list_each_once()
+    hole, fits = found.make_clamp_placement(problem).find_nearest_holes(problem)
+    return make_wall_table(found.take(fits), hole[fits], problem)

@@ -17,9 +17,9 @@ from math import asin, atan2, isfinite, pi
 
 from attrs import frozen
 
-from workhold.errors import InputError, plain, shortened
-from workhold.fixels.carrier import Carrier, hole_name
-from workhold.fixels.pegs import peg_outline
+from workhold.errors import InputError, make_printable, shorten_middle
+from workhold.fixels.carrier import Carrier, make_hole_name
+from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import LoopShape, compute_signed_area, encloses
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
@@ -206,7 +206,7 @@ def list_fixture_bodies(
     sizes = BodySizes.of(workpiece) if sizes is None else sizes
     seen = shown(fixture, toolkit, workpiece)
     part = make_part_slabs(workpiece.placed(fixture.pose), sizes.thickness)
-    name = plain(shortened(workpiece.name, LONGEST_NAME))
+    name = make_printable(shorten_middle(workpiece.name, LONGEST_NAME))
     return (
         FixtureBody(name, BodyKind.PART, part),
         *pegs(seen, sizes),
@@ -262,13 +262,13 @@ def pegs(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
         carrier = each.carrier
         for peg in each.pegs:
             center = (peg.x, peg.y)
-            outline = tuple(peg_outline(center, carrier.peg_radius, carrier.flat, peg.flat_deg))
+            outline = tuple(make_peg_outline(center, carrier.peg_radius, carrier.flat, peg.flat_deg))
             begin, top = carrier.heights or (0.0, sizes.top)
             # A peg that begins higher is shown from there: what carries it is its owner's to say.
             low = begin if begin > 0.0 else sizes.top - sizes.peg_length
             slabs = [Slab(outline, (), low, top)]
             if len(outline) > 1 and low < sizes.floor:
-                foot = tuple(peg_outline(center, carrier.peg_radius))
+                foot = tuple(make_peg_outline(center, carrier.peg_radius))
                 slabs = [Slab(foot, (), low, sizes.floor), Slab(outline, (), sizes.floor, top)]
             yield FixtureBody(
                 f"{carrier.peg} {peg.hole}", BodyKind.PEG, tuple(slabs), find_opening_direction(each)
@@ -281,8 +281,8 @@ def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
         body = Slab(clamp.outline(), (), *sizes.between(clamp.carrier))
         yield FixtureBody(clamp.tip.hole, BodyKind.CLAMP, (body,), reverse(clamp.clamping))
         if clamp.hole is not None:
-            round_part = tuple(peg_outline(clamp.hole, seen.carriers[0].carrier.peg_radius))
-            place = hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)
+            round_part = tuple(make_peg_outline(clamp.hole, seen.carriers[0].carrier.peg_radius))
+            place = make_hole_name(clamp.carrier.stands_on, clamp.tip.column, clamp.tip.row)
             bolt = Slab(round_part, (), sizes.floor - sizes.plate_thickness, sizes.floor)
             yield FixtureBody(f"bolt {place}", BodyKind.CLAMP, (bolt,))
 
@@ -293,7 +293,7 @@ def flat_jaws(seen: Shown, fixture: Fixture, toolkit: Toolkit, sizes: BodySizes)
     if seen.jaws is None or jaws is None or hold is None:
         return
     low = 0.0 - hold.parallels
-    top = sizes.top if jaws.height is None else jaws.top(hold.parallels)
+    top = sizes.top if jaws.height is None else jaws.compute_top(hold.parallels)
     around = seen.jaws.fixed.union(seen.jaws.moving)
     bed = Slab(rectangle(around), (), low - sizes.plate_thickness, low)
     yield FixtureBody("fixed jaw", BodyKind.WALL, (Slab(rectangle(seen.jaws.fixed), (), low, top),))

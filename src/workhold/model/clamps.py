@@ -154,7 +154,7 @@ class ShownClamp:
 
 def list_shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp]:
     for peg in fixture.pegs:
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         clamping = find_clamping_direction(carrier, toolkit)
         if carrier.contact is CLAMP_TIP and clamping is not None:
             hole = carrier.place(peg.column, peg.row) if carrier.measure == "stroke" else None

@@ -31,7 +31,7 @@ from attrs import Factory, cmp_using, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import real, refuse_strong
+from workhold.limits import convert_real, refuse_strong
 from workhold.model.cutting_tool import ANY, DIRECTIONS, CuttingData, CuttingDirection, Tool
 from workhold.model.moves import Moves, Stretches, floats, integers
 
@@ -162,8 +162,10 @@ class CuttingForces:
         """
         none: dict[str, Any] = {"force": 0.0, "torque": 0.0, "axial": [0.0, 0.0], "height": 0.0}
         taken = [none if isinstance(row, bytes) else row.get("cutting", none) for row in rows]
-        force, torque, height = ([real(one[name]) for one in taken] for name in ("force", "torque", "height"))
-        axial = np.array([[real(value) for value in one["axial"]] for one in taken]).reshape(-1, 2)
+        force, torque, height = (
+            [convert_real(one[name]) for one in taken] for name in ("force", "torque", "height")
+        )
+        axial = np.array([[convert_real(value) for value in one["axial"]] for one in taken]).reshape(-1, 2)
         # What stands before the words that follow the number says how large it is.
         reasons = {int(key): str(words).partition(" N ")[2] for key, words in said["tools"].items()}
         usual = kinds_of(np.array(force), np.array(torque)).tolist()
@@ -175,7 +177,7 @@ class CuttingForces:
             one.get("stretches", [[0.0, 1.0]] if number else [])
             for one, number in zip(taken, kind, strict=True)
         ]
-        shares = [(real(one), real(other)) for rows in each for one, other in rows]
+        shares = [(convert_real(one), convert_real(other)) for rows in each for one, other in rows]
         move = np.repeat(np.arange(len(each)), [len(rows) for rows in each])
         first, last = np.array(shares).reshape(-1, 2).T
         return cls(

@@ -16,7 +16,7 @@ from attrs.converters import optional
 
 from workhold.asking.program import CuttingQuestion
 from workhold.errors import InputError
-from workhold.limits import read_number, real, refuse_long, refuse_strong
+from workhold.limits import convert_real, read_number, refuse_long, refuse_strong
 
 __all__ = [
     "ANY",
@@ -70,7 +70,7 @@ class CutMaterial:
     source: str = SOURCE
 
     def __attrs_post_init__(self) -> None:
-        if not (0.0 < real(self.kc) <= MOST_SPECIFIC and 0.0 <= real(self.mc) < 1.0):
+        if not (0.0 < convert_real(self.kc) <= MOST_SPECIFIC and 0.0 <= convert_real(self.mc) < 1.0):
             raise InputError(
                 f"a material with kc1.1 {self.kc:g} and mc {self.mc:g} cannot be used: give N/mm2 up to "
                 f"{MOST_SPECIFIC:g} and a number from 0 to below 1, such as 1500,0.22."
@@ -176,8 +176,8 @@ class CuttingData(CuttingQuestion):
     """
 
     material: CutMaterial | None = field(default=None, converter=optional(material_of))
-    point_angle: float | None = field(default=None, converter=optional(real))
-    helix_angle: float | None = field(default=None, converter=optional(real))
+    point_angle: float | None = field(default=None, converter=optional(convert_real))
+    helix_angle: float | None = field(default=None, converter=optional(convert_real))
     direction: CuttingDirection | None = field(default=None, converter=optional(direction_of))
 
     def __attrs_post_init__(self) -> None:
@@ -256,9 +256,9 @@ class Cylinder:
         For heights and a radius that make none.
     """
 
-    low: float = field(converter=real)
-    high: float = field(converter=real)
-    radius: float = field(converter=real)
+    low: float = field(converter=convert_real)
+    high: float = field(converter=convert_real)
+    radius: float = field(converter=convert_real)
 
     def __attrs_post_init__(self) -> None:
         if not (0.0 <= self.low < self.high and isfinite(self.high) and 0.0 < self.radius < inf):
@@ -295,10 +295,10 @@ class Tool:
 
     number: int
     cylinders: tuple[Cylinder, ...] = field(converter=cylinders_of)
-    diameter: float = field(converter=real)
+    diameter: float = field(converter=convert_real)
     name: str = ""
     cutting: CuttingData = field(factory=CuttingData, eq=False)
-    flute_length: float | None = field(default=None, converter=optional(real))
+    flute_length: float | None = field(default=None, converter=optional(convert_real))
     kind: str = field(default="", converter=str, eq=False)
     has_holder: bool | None = field(default=None, eq=False)
 

@@ -14,7 +14,7 @@ from importlib.resources import files
 from attrs import frozen
 
 from workhold.conventions import DOWEL_DEPTH, SAME_HEIGHT, SAME_SIZE
-from workhold.units import INCH, Unit, unit_named
+from workhold.units import INCH, Unit, find_unit
 
 __all__ = ["DowelLengths", "SoldDowel", "find_shortest_dowel", "lengths_of", "standouts"]
 
@@ -45,10 +45,10 @@ def sold() -> tuple[DowelLengths, ...]:
     text = (files("workhold") / "data" / "dowels.toml").read_text(encoding="utf-8")
     found = []
     for entry in tomllib.loads(text)["lengths"]:
-        unit = unit_named(entry["unit"])
+        unit = find_unit(entry["unit"])
         for diameter, shortest, longest in entry["sizes"]:
-            lengths = tuple(unit.length(one) for one in entry["steps"] if shortest <= one <= longest)
-            found.append(DowelLengths(entry["name"], unit, unit.length(diameter), lengths))
+            lengths = tuple(unit.to_mm(one) for one in entry["steps"] if shortest <= one <= longest)
+            found.append(DowelLengths(entry["name"], unit, unit.to_mm(diameter), lengths))
     return tuple(found)
 
 
@@ -112,7 +112,7 @@ def format_dowel_size(size: float, unit: Unit) -> str:
     ('1-1/2', '1/4')
     """
     if unit is not INCH:
-        return unit.figure(size)
+        return unit.format_short_length(size)
     inches = Fraction(size / unit.millimetres).limit_denominator(FINEST)
     whole, rest = divmod(inches, 1)
     return "-".join([*([str(whole)] if whole or not rest else []), *([str(rest)] if rest else [])])

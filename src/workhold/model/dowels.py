@@ -29,7 +29,7 @@ from attrs import frozen
 
 from workhold.conventions import SAME_SIZE
 from workhold.errors import InputError
-from workhold.fixels.carrier import hole_name
+from workhold.fixels.carrier import make_hole_name
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box, Point
 from workhold.units import MILLIMETRE, Unit
@@ -251,8 +251,8 @@ def list_jaw_plates(
         diameter = 2 * carrier.peg_radius if hole_diameter is None else hole_diameter
         if not 0 < diameter < min(carrier.pitch):
             raise InputError(
-                f"dowel holes of {unit.figure(diameter)} {unit.abbreviation} do not fit a lattice whose "
-                f"holes are {unit.figure(min(carrier.pitch))} {unit.abbreviation} apart: give a diameter "
+                f"dowel holes of {unit.format_short_length(diameter)} {unit.abbreviation} do not fit a lattice whose "
+                f"holes are {unit.format_short_length(min(carrier.pitch))} {unit.abbreviation} apart: give a diameter "
                 "between 0 and that."
             )
         margins = [pitch / 2 if edge is None else edge for pitch in carrier.pitch]
@@ -269,7 +269,7 @@ def list_jaw_plates(
             outline,
             diameter,
             tuple(
-                (hole_name(carrier.name, column, row), (column * pitch_x, row * pitch_y))
+                (make_hole_name(carrier.name, column, row), (column * pitch_x, row * pitch_y))
                 for row in range(carrier.rows)
                 for column in range(carrier.columns)
                 if not carrier.is_blocked(column, row)
@@ -288,12 +288,12 @@ def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
         return
     if not (isfinite(bolts.diameter) and bolts.diameter > 0):
         raise InputError(
-            f"bolt holes of {unit.figure(bolts.diameter)} {unit.abbreviation} cannot be drilled: give more "
+            f"bolt holes of {unit.format_short_length(bolts.diameter)} {unit.abbreviation} cannot be drilled: give more "
             "than 0."
         )
     radius, apart = bolts.diameter / 2, (bolts.diameter + plate.hole_diameter) / 2
     for number, (x, y) in enumerate(bolts.places, 1):
-        name = f"bolt {number} at {unit.figure(x)},{unit.figure(y)}"
+        name = f"bolt {number} at {unit.format_short_length(x)},{unit.format_short_length(y)}"
         if not plate.outline.contains(Box.about((x, y), 2 * radius, 2 * radius)):
             raise InputError(f"{name} leaves the {plate.title}'s plate: move it, or make the plate larger.")
         for hole, (u, v) in plate.holes:

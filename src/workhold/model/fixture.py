@@ -13,7 +13,7 @@ from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.fixels.carrier import JAWS, WALL, hole_name
+from workhold.fixels.carrier import JAWS, WALL, make_hole_name
 from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 from workhold.model.straps import StrapHardware
@@ -92,7 +92,7 @@ class Peg:
     @property
     def hole(self) -> str:
         """The hole's name: the carrier's letter, column letter, row number from 1, such as ``L-B3``."""
-        return self.place or hole_name(self.carrier, self.column, self.row)
+        return self.place or make_hole_name(self.carrier, self.column, self.row)
 
 
 @frozen
@@ -141,7 +141,9 @@ class Listed:
     def others(self) -> int:
         """How many other fixtures of the result use the same holes."""
         return (
-            int(self.result.table.same_holes(self.row)) if self.in_same_holes is None else self.in_same_holes
+            int(self.result.table.count_in_same_holes(self.row))
+            if self.in_same_holes is None
+            else self.in_same_holes
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -214,9 +216,9 @@ class Fixture:
         return None if self.listed is None else self.draw()
 
     def _repr_html_(self) -> str | None:
-        from workhold.presenting.notebook import fixture_html
+        from workhold.presenting.notebook import render_fixture_html
 
-        return fixture_html(self)
+        return render_fixture_html(self)
 
     @property
     def travels(self) -> tuple[float, ...]:
@@ -410,9 +412,9 @@ class Fixture:
         >>> "Fixture 1 of" in result[0].draw()
         True
         """
-        from workhold.presenting.papers import fixture_picture
+        from workhold.presenting.papers import draw_and_save_fixture
 
-        return fixture_picture(self, path, title=title, unit=unit, overwrite=overwrite)
+        return draw_and_save_fixture(self, path, title=title, unit=unit, overwrite=overwrite)
 
     def save_sheet(
         self,

@@ -117,7 +117,7 @@ class FixtureTable:
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
         return FixtureTable(*(column[order] for column in self.columns))
 
-    def same_holes(self, index: int) -> int:
+    def count_in_same_holes(self, index: int) -> int:
         """How many other fixtures have their pegs in the same holes as the one of an index."""
         if self.column.shape[1] == 0:
             return 0
@@ -203,7 +203,7 @@ def peg_places(
     table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """x and y (N, P) in mm of all pegs of a table; those of a wall are where the workpiece touches it."""
-    x, y = toolkit.places(table.arrangement, table.column, table.row, table.jaw_separation)
+    x, y = toolkit.compute_hole_places(table.arrangement, table.column, table.row, table.jaw_separation)
     for ends in toolkit.ends_on_walls:
         x[:, ends] = wall_ends(workpiece, toolkit, table.theta, table.position).x
         y[:, ends] = 0.0

@@ -14,7 +14,7 @@ from typing import Any
 from attrs import frozen
 
 from workhold.errors import InputError
-from workhold.limits import MOST_FRICTION, real
+from workhold.limits import MOST_FRICTION, convert_real
 
 __all__ = [
     "COEFFICIENTS",
@@ -84,7 +84,7 @@ def coefficients_of(value: Any) -> Coefficients | None:
             raise InputError(
                 f"friction of {str(name)[:40]!r} is not known: give that of {', '.join(COEFFICIENTS)}."
             )
-        if not (isfinite(real(number, "a coefficient of friction")) and 0 < number <= MOST_FRICTION):
+        if not (isfinite(convert_real(number, "a coefficient of friction")) and 0 < number <= MOST_FRICTION):
             raise InputError(
                 f"friction {number:g} of the {name} cannot be used: give a coefficient above 0 and at most "
                 f"{MOST_FRICTION:g}, such as 0.15."

@@ -65,7 +65,7 @@ def force_words(force: float, unit: Unit) -> str:
     >>> force_words(3432.8, MILLIMETRE)
     '3500 N'
     """
-    return unit.force_words(set_force(force))
+    return unit.format_force(set_force(force))
 
 
 def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
@@ -76,7 +76,7 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
         yield f"Take the parallels of {short(hold.parallels, unit)}, one beside each jaw"
     else:
         yield "No parallels: the part lies on the bed of the vise"
-    yield f"Open the jaws a little more than {unit.text(hold.opening)}"
+    yield f"Open the jaws a little more than {unit.format_length(hold.opening)}"
     turned = "as drawn"
     if abs(fixture.pose.written_deg) > 1e-9:
         turned = f"turned by {round(fixture.pose.written_deg, 3):g}°"
@@ -85,19 +85,19 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
         f"{describe_touched_faces(hold.moving)}"
     )
     start = min(hold.fixed.ends[0], hold.moving.ends[0])
-    where = f"what is gripped begins {unit.text(start)} from the left end of the jaws"
+    where = f"what is gripped begins {unit.format_length(start)} from the left end of the jaws"
     if hold.stop is None:
         yield f"Put it in the middle of the jaws, as there is no stop: {where}"
     else:
         yield f"Push it against the work stop, {describe_work_stop(hold, jaws.stop_offset, unit)}: {where}"
     needed = hold.clamp_needed
     if needed is not None:
-        torque = jaws.torque(set_force(needed))
-        on_screw = "" if torque is None else f", about {unit.moment_words(torque * 1000.0)} on the screw"
-        apart = f"they stand {unit.text(hold.opening)} apart"
+        torque = jaws.compute_torque(set_force(needed))
+        on_screw = "" if torque is None else f", about {unit.format_moment(torque * 1000.0)} on the screw"
+        apart = f"they stand {unit.format_length(hold.opening)} apart"
         yield f"Close the jaws with {force_words(needed, unit)} or more{on_screw}; {apart}"
     else:
-        yield f"Close the jaws; they stand {unit.text(hold.opening)} apart"
+        yield f"Close the jaws; they stand {unit.format_length(hold.opening)} apart"
 
 
 def describe_coefficients(query: Query) -> str:
@@ -123,7 +123,7 @@ def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
         f"both jaws grip {short(hold.grip, unit)}, {area}" if hold.contact_area else "gripped along a line"
     )
     if hold.clamp_needed is not None:
-        words.append(f"asks for a jaw force of {unit.force_words(hold.clamp_needed)}")
+        words.append(f"asks for a jaw force of {unit.format_force(hold.clamp_needed)}")
     if hold.above:
         words.append(f"{short(hold.above, unit)} above the jaws")
     return words

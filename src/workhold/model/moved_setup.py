@@ -15,8 +15,8 @@ from math import inf
 from attrs import evolve, frozen
 
 from workhold.conventions import AGREEMENT
-from workhold.errors import InputError, listed
-from workhold.fixels.carrier import column_letters
+from workhold.errors import InputError, join_words
+from workhold.fixels.carrier import make_column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Box
 from workhold.model.clamps import list_shown_clamps
@@ -55,7 +55,7 @@ def shift_hole_numbers(
     dx, dy = move
 
     def further(peg: Peg) -> Peg:
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         if not carrier.contact.is_placed:
             return evolve(peg, x=peg.x + dx, y=peg.y + dy)
         by = shifts[carrier.stands_on]
@@ -70,7 +70,7 @@ def shift_hole_numbers(
         0.0
         if all(carrier.counted) or carrier.travel is None
         else dx * carrier.travel.unit[0] + dy * carrier.travel.unit[1]
-        for carrier in (toolkit.carrier(peg.carrier) for peg in fixture.pegs)
+        for carrier in (toolkit.find_carrier(peg.carrier) for peg in fixture.pegs)
         if carrier.on is not None
     ]
     before = fixture.travels
@@ -82,7 +82,7 @@ def shift_hole_numbers(
 
 def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
     """The columns and the rows that pegs and clamps take up."""
-    counted = [(peg, toolkit.carrier(peg.carrier).counted) for peg in fixture.pegs]
+    counted = [(peg, toolkit.find_carrier(peg.carrier).counted) for peg in fixture.pegs]
     return (
         [peg.column for peg, (in_column, _) in counted if in_column],
         [peg.row for peg, (_, in_row) in counted if in_row],
@@ -179,7 +179,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
         if not -back <= steps <= (inf if ahead is None else ahead):
             least = lowest[number] - back
             most = None if ahead is None else lowest[number] + ahead
-            named = row_name if number else column_letters
+            named = row_name if number else make_column_letters
             may = named(least)
             if most is None:
                 may += " or farther"
@@ -189,7 +189,7 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
                 f"the set-up cannot stand at {name.strip()[:40]}: its lowest {noun} can be {may}; {REMEDY}."
             )
     for peg in move_fixture_by_holes(fixture, toolkit, move).pegs:
-        if toolkit.carrier(peg.carrier).is_blocked(peg.column, peg.row):
+        if toolkit.find_carrier(peg.carrier).is_blocked(peg.column, peg.row):
             raise InputError(
                 f"the set-up cannot stand at {name.strip()[:40]}: hole {peg.hole} is blocked; {REMEDY}."
             )
@@ -259,10 +259,10 @@ def describe_overhang(
     found, wall = list(overhangs(fixture, toolkit, workpiece)), toolkit.reaching
     if not found:
         return ""
-    sides = listed([f"{text(one.length)} at the {SIDES[one.side]}" for one in found])
+    sides = join_words([f"{text(one.length)} at the {SIDES[one.side]}" for one in found])
     if wall is not None or toolkit.flat_jaws is not None:
         return f"The part stands out beyond the {'jaws' if wall is None else wall.noun}: {sides}."
-    nouns = listed([plate.title for plate in toolkit.plates])
+    nouns = join_words([plate.title for plate in toolkit.plates])
     edges = "edge is" if len(toolkit.plates) == 1 else "edges are"
     return f"The part hangs over the {nouns}: {sides} (the {edges} taken half a pitch beyond the last holes)."
 

@@ -22,7 +22,7 @@ from attrs import Factory, cmp_using, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import MOST_LENGTH, real
+from workhold.limits import MOST_LENGTH, convert_real
 from workhold.model.cutting_tool import Tool
 
 __all__ = [
@@ -333,7 +333,7 @@ def pack_piece(entries: Mapping[str, Any]) -> bytes:
         For entries that lack something, or hold what cannot be.
     """
     line, tool, kind = int(entries["line"]), int(entries["tool"]), entries["kind"]
-    path = tuple((real(x), real(y), real(bulge)) for x, y, bulge in entries["path"])
+    path = tuple((convert_real(x), convert_real(y), convert_real(bulge)) for x, y, bulge in entries["path"])
     if kind not in (RAPID, CUT) or not path or line.bit_length() > 62:
         raise InputError(f"a piece of line {line} of the program cannot be used: leave it out.")
     (x, y, bulge), (to_x, to_y, _) = path[0], path[len(path) // 2]
@@ -342,13 +342,13 @@ def pack_piece(entries: Mapping[str, Any]) -> bytes:
     ends = (x, y, bulge, to_x, to_y, *pair_of(entries["z"]))
     if not all(map(isfinite, ends)):
         raise InputError(f"a move of line {line} of the program ends nowhere: correct it.")
-    shape = (*pair_of(entries["heights"]), real(entries["radius"]))
+    shape = (*pair_of(entries["heights"]), convert_real(entries["radius"]))
     return PACKED.pack(line, tool, kind == CUT, len(path), *ends, *shape)
 
 
 def pair_of(values: Any) -> tuple[float, float]:
     one, other = values
-    return real(one), real(other)
+    return convert_real(one), convert_real(other)
 
 
 def moves_of(pieces: Sequence[bytes], tools: Mapping[int, Tool]) -> Moves:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal, get_args
 
 from attrs import asdict, field, frozen
 
-from workhold.errors import listed
+from workhold.errors import join_words
 from workhold.fixels.toolkit import Wording
 
 __all__ = [
@@ -115,7 +115,7 @@ class NoFixture(Note):
             "plain vise."
         )
         if self.asked:
-            with_it = f"With what was asked for ({listed(self.asked)})"
+            with_it = f"With what was asked for ({join_words(self.asked)})"
             if self.stage == "shape":
                 return (
                     f"{with_it} every place that is left for a peg lies along arcs about one centre, {centre}"
@@ -204,7 +204,7 @@ class AskedFor(Note):
 
     @property
     def words(self) -> str:
-        return f"So it is with what was asked for: {listed(self.rules)}."
+        return f"So it is with what was asked for: {join_words(self.rules)}."
 
 
 @frozen

@@ -14,11 +14,11 @@ import numpy as np
 from attrs import field, frozen
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.errors import InputError, quoted
+from workhold.errors import InputError, quote_value
 from workhold.geometry.hull import HullEdge, HullEnd
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.limits import real, real_array, with_names
+from workhold.limits import convert_real, make_real_array, name_number_fields
 
 __all__ = ["ENDS", "Flush", "Pose"]
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 ENDS = ("left", "right")
 
 
-@frozen(field_transformer=with_names)
+@frozen(field_transformer=name_number_fields)
 class Pose:
     """Where a part lies: the map of its point q to R(theta) q + (x, y).
 
@@ -57,9 +57,9 @@ class Pose:
     [39.0, 8.0, 1.0]
     """
 
-    theta_deg: float = field(converter=real)
-    x: float = field(converter=real)
-    y: float = field(converter=real)
+    theta_deg: float = field(converter=convert_real)
+    x: float = field(converter=convert_real)
+    y: float = field(converter=convert_real)
 
     @property
     def written_deg(self) -> float:
@@ -97,8 +97,8 @@ class Pose:
         """
         if y is None:
             if isinstance(x, str):
-                raise InputError(f"points cannot be {quoted(x)}: give numbers (N, 2).")
-            vectors = real_array(x, "a coordinate")
+                raise InputError(f"points cannot be {quote_value(x)}: give numbers (N, 2).")
+            vectors = make_real_array(x, "a coordinate")
             return np.stack(self.turn(vectors[..., 0], vectors[..., 1]), axis=-1)
         return rotate_vectors(x, y, radians(self.theta_deg))
 

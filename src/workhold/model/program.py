@@ -20,7 +20,7 @@ from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long, with_names
+from workhold.limits import convert_real, name_number_fields, refuse_long
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import (
@@ -84,7 +84,7 @@ class SweptArrays(NamedTuple):
     box: NDArray[np.bool_]
 
 
-@frozen(repr=False, field_transformer=with_names)
+@frozen(repr=False, field_transformer=name_number_fields)
 class Program:
     """A program as it was understood, in the part's coordinates and mm; z is 0 where the part lies.
 
@@ -115,8 +115,8 @@ class Program:
     sha256: str
     unit: str
     zero: tuple[float, float]
-    z_zero: float = field(converter=real)
-    clearance: float = field(default=1.0, converter=real)
+    z_zero: float = field(converter=convert_real)
+    clearance: float = field(default=1.0, converter=convert_real)
     rapid: Literal["straight", "box"] = "straight"
     tools: Mapping[int, Tool] = field(factory=dict, converter=read_tool_table, hash=False)
     moves: Moves = field(factory=lambda: Moves.of_rows(()))
@@ -359,7 +359,7 @@ class Program:
             For entries that lack something, or hold what cannot be.
         """
         tools = {int(key): Tool.of_entries(int(key), value) for key, value in entries["tools"].items()}
-        x, y = (real(value) for value in entries["zero"])
+        x, y = (convert_real(value) for value in entries["zero"])
         rows, said, stock = entries["pieces"], entries.get("forces"), entries.get("stock")
         moves = moves_of([one if isinstance(one, bytes) else pack_piece(one) for one in rows], tools)
         # A move has a piece for each cylinder of its tool, all with the same force; packed ones have none.

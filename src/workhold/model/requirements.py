@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from workhold.asking.search import RuledOut
 from workhold.conventions import ANGLE_SLACK
-from workhold.errors import InputError, quoted
+from workhold.errors import InputError, quote_value
 from workhold.geometry.loop import (
     LoopShape,
     check_vertices,
@@ -28,7 +28,7 @@ from workhold.geometry.loop import (
     reverse_vertices,
 )
 from workhold.geometry.segment import Box, Segment
-from workhold.limits import real, refuse_long, refuse_strong, with_names
+from workhold.limits import convert_real, name_number_fields, refuse_long, refuse_strong
 from workhold.model.dowels import Fit
 
 __all__ = [
@@ -55,13 +55,15 @@ def number_pairs(values: Any, name: str, remedy: str) -> tuple[tuple[float, floa
     if given is not None and len(given) == 2 and not any(isinstance(one, Iterable) for one in given):
         given = [given]
     if given is None:
-        raise InputError(f"{name} cannot be {quoted(values)}: {remedy}.")
+        raise InputError(f"{name} cannot be {quote_value(values)}: {remedy}.")
     pairs = []
     for one in given:
         numbers = tuple(one) if isinstance(one, Iterable) and not isinstance(one, str | bytes) else ()
         if len(numbers) != 2:
-            raise InputError(f"{name} cannot be {quoted(one)}: {remedy}.")
-        pairs.append((real(numbers[0], f"a number of {name}"), real(numbers[1], f"a number of {name}")))
+            raise InputError(f"{name} cannot be {quote_value(one)}: {remedy}.")
+        pairs.append(
+            (convert_real(numbers[0], f"a number of {name}"), convert_real(numbers[1], f"a number of {name}"))
+        )
     return tuple(pairs)
 
 
@@ -75,11 +77,11 @@ def direction_range(directions: Any) -> tuple[float, float]:
     """A range of directions in degrees, from ``low`` counter-clockwise to ``high``, with low in [0, 360) and
     low <= high <= low + 360; one number is that direction alone."""
     if isinstance(directions, str | bytes) or not isinstance(directions, Iterable):
-        directions = (real(directions, "a direction"),) * 2
-    values = tuple(real(value, "a direction") for value in directions)
+        directions = (convert_real(directions, "a direction"),) * 2
+    values = tuple(convert_real(value, "a direction") for value in directions)
     if len(values) != 2:
         raise InputError(
-            f"directions cannot be {quoted(directions)}: give one in degrees, or the two ends of a range."
+            f"directions cannot be {quote_value(directions)}: give one in degrees, or the two ends of a range."
         )
     low, high = values
     if 0.0 <= low < 360.0 and low <= high <= low + 360.0:
@@ -96,7 +98,7 @@ def direction_range(directions: Any) -> tuple[float, float]:
     return start, start + (high - low) % 360.0
 
 
-@frozen(field_transformer=with_names)
+@frozen(field_transformer=name_number_fields)
 class Load:
     """A force and a moment that act ON the workpiece; pegs must push back.
 
@@ -130,12 +132,12 @@ class Load:
     """
 
     points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
-    force: float = field(default=0.0, converter=real)
+    force: float = field(default=0.0, converter=convert_real)
     directions: tuple[float, float] = field(default=ANY_DIRECTION, converter=direction_range)
-    moment: float = field(default=0.0, converter=real)
+    moment: float = field(default=0.0, converter=convert_real)
     name: str = ""
-    upward: float = field(default=0.0, converter=real)
-    height: float | None = field(default=None, converter=optional(real))
+    upward: float = field(default=0.0, converter=convert_real)
+    height: float | None = field(default=None, converter=optional(convert_real))
 
     def __attrs_post_init__(self) -> None:
         if not all(map(isfinite, (self.upward, self.height or 0.0))):
@@ -232,7 +234,7 @@ def circle_zone(x: float, y: float, radius: float) -> Zone:
     InputError
         When it has no size.
     """
-    x, y, radius = (real(value, "a number of a keep-out circle") for value in (x, y, radius))
+    x, y, radius = (convert_real(value, "a number of a keep-out circle") for value in (x, y, radius))
     if not (isfinite(x) and isfinite(y) and isfinite(radius) and radius > 0):
         raise InputError(
             f"a keep-out circle of radius {radius:g} at ({x:g}, {y:g}) is no circle: give a positive radius."
@@ -299,7 +301,7 @@ def zones_of(zone: Any) -> Iterator[Zone]:
         yield polygon_zone(list(zone.exterior.coords)[:-1])
     else:
         raise InputError(
-            f"a keep-out zone cannot be {quoted(zone)}: give a circle_zone, a polygon_zone or a polygon of "
+            f"a keep-out zone cannot be {quote_value(zone)}: give a circle_zone, a polygon_zone or a polygon of "
             "shapely."
         )
 
@@ -309,9 +311,9 @@ def face_numbers(numbers: Any) -> tuple[int, ...]:
     several = isinstance(numbers, Iterable) and not isinstance(numbers, str | bytes)
     given = list(numbers) if several else [numbers]
     for one in given:
-        number = real(one, "the number of a face")
+        number = convert_real(one, "the number of a face")
         if not number.is_integer():
-            raise InputError(f"the number of a face cannot be {quoted(one)}: give a whole number.")
+            raise InputError(f"the number of a face cannot be {quote_value(one)}: give a whole number.")
     return tuple(sorted({int(one) for one in given}))
 
 
@@ -371,7 +373,7 @@ class Restrictions(RuledOut):
         return bool(self.avoid or self.zones or self.angles or self.touch)
 
 
-@frozen(field_transformer=with_names)
+@frozen(field_transformer=name_number_fields)
 class Tolerance:
     """Largest errors along the normal of a contact, either way.
 
@@ -389,10 +391,10 @@ class Tolerance:
         For lengths that are negative, not finite or too large.
     """
 
-    peg: float = field(default=0.01, converter=real)
-    face: float = field(default=0.01, converter=real)
+    peg: float = field(default=0.01, converter=convert_real)
+    face: float = field(default=0.01, converter=convert_real)
     fit: Fit | None = None
-    departure: float = field(default=0.0, converter=real)
+    departure: float = field(default=0.0, converter=convert_real)
 
     def __attrs_post_init__(self) -> None:
         for name, value in (
@@ -419,9 +421,9 @@ class Tolerance:
         >>> round(Tolerance.preset("plate-20mm").peg, 6)
         0.0145
         """
-        from workhold.files.toolkit_file import preset_tolerance
+        from workhold.files.toolkit_file import load_preset_tolerance
 
-        return preset_tolerance(name)
+        return load_preset_tolerance(name)
 
     def with_departure(self, departure: float) -> Tolerance:
         """The tolerance for an outline that departs by up to ``departure`` mm from the drawn one.

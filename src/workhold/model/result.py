@@ -10,7 +10,7 @@ import numpy as np
 from attrs import define, evolve, field
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.errors import InputError, quoted, refuse_kind
+from workhold.errors import InputError, quote_value, refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Listed
 from workhold.model.fixture_table import BLOCK, FixtureTable, fixtures_of, make_fixture_of_row
@@ -114,7 +114,7 @@ class Result:
     @property
     def counts(self) -> dict[str, int]:
         """How many fixtures of each arrangement are listed."""
-        return self.toolkit.arrangements_counted(self.table.arrangement)
+        return self.toolkit.count_arrangements(self.table.arrangement)
 
     def __len__(self) -> int:
         return len(self.table)
@@ -185,7 +185,7 @@ class Result:
             chosen = np.flatnonzero(given)
         elif given.ndim != 1 or not (np.issubdtype(given.dtype, np.integer) or not given.size):
             raise InputError(
-                f"fixtures cannot be chosen by {quoted(rows)}: give their numbers from 0, or a mask of booleans."
+                f"fixtures cannot be chosen by {quote_value(rows)}: give their numbers from 0, or a mask of booleans."
             )
         else:
             away = (given < -len(self)) | (given >= len(self))
@@ -261,9 +261,9 @@ class Result:
         return f"<Result: {self.words}>"
 
     def _repr_html_(self) -> str:
-        from workhold.presenting.notebook import result_html
+        from workhold.presenting.notebook import render_result_html
 
-        return result_html(self)
+        return render_result_html(self)
 
     def draw(self, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False) -> Picture:
         """The best twelve at a glance, near duplicates once: SVG text, which a notebook shows as a picture.
@@ -279,9 +279,9 @@ class Result:
         InputError
             For a result without a fixture, and when the file cannot be written or replaced.
         """
-        from workhold.presenting.papers import result_picture
+        from workhold.presenting.papers import draw_and_save_result
 
-        return result_picture(self, path, unit=unit, overwrite=overwrite)
+        return draw_and_save_result(self, path, unit=unit, overwrite=overwrite)
 
     def widget(
         self,
@@ -310,9 +310,9 @@ class Result:
         InputError
             For a result without a fixture, and values that cannot be.
         """
-        from workhold.presenting.notebook import result_widget
+        from workhold.presenting.notebook import make_result_widget
 
-        return result_widget(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw, supports=supports)
+        return make_result_widget(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw, supports=supports)
 
     def why_none(self) -> WhyNone:
         """Why there is no fixture: what each rule takes away, the nearest miss, and what would help.
@@ -324,9 +324,9 @@ class Result:
         InputError
             For a result that has fixtures, or whose search was stopped.
         """
-        from workhold.presenting.notebook import why_none
+        from workhold.presenting.notebook import explain_no_fixtures
 
-        return why_none(self)
+        return explain_no_fixtures(self)
 
     def to_pandas(self) -> DataFrame:
         """All fixtures as a DataFrame, best first, with the columns of the CSV form, in mm and degrees.

@@ -11,7 +11,7 @@ from typing import Any
 
 from attrs import field, frozen
 
-from workhold.errors import listed
+from workhold.errors import join_words
 from workhold.model.fixture import Fixture
 from workhold.model.notes import Note
 
@@ -179,5 +179,5 @@ class Explanation:
         if self.taken_by in ((), (self.last_rule,)):
             return ""
         alone = all(len(help.rules) < 2 for help in self.helps)
-        rules = " or ".join(self.taken_by) if alone else f"{listed(self.taken_by)} together"
+        rules = " or ".join(self.taken_by) if alone else f"{join_words(self.taken_by)} together"
         return f"What was asked for rules out the last fixtures: {rules}."

@@ -229,9 +229,9 @@ class Seating:
         return f"<Seating: {self.words}>"
 
     def _repr_html_(self) -> str:
-        from workhold.presenting.notebook import seating_html
+        from workhold.presenting.notebook import render_seating_html
 
-        return seating_html(self)
+        return render_seating_html(self)
 
     def in_toolkit(self, toolkit: Toolkit, opening: float | None = None) -> Seating:
         """A copy with what follows from a toolkit, and an opening up to which seats count."""

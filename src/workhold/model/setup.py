@@ -100,7 +100,7 @@ def part_zero(
 def check_point(numbers: Sequence[str], words: str, unit: Unit) -> Point:
     """The point in mm that two numbers give; refuses others than two, infinite ones and too large ones."""
     try:
-        x, y = (unit.length(float(number)) for number in numbers)
+        x, y = (unit.to_mm(float(number)) for number in numbers)
     except (ValueError, OverflowError):
         x = y = float("nan")
     if not (isfinite(x) and isfinite(y)):
@@ -231,12 +231,12 @@ def list_length_settings(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSett
     >>> setting.sign, setting.length, setting.start
     ('stroke', 14.0, (80.0, 20.0))
     """
-    clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
+    clamps = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).contact is CLAMP_TIP]
     if clamps:
         return tuple(
             measure_clamp_setting(tip, toolkit, travelled, len(clamps))
             for tip, travelled in zip(clamps, fixture.travels, strict=True)
-            if toolkit.carrier(tip.carrier).travel is not None
+            if toolkit.find_carrier(tip.carrier).travel is not None
         )
     travelled, name = fixture.travel, "opening S"
     return tuple(
@@ -256,7 +256,7 @@ def list_length_settings(fixture: Fixture, toolkit: Toolkit) -> tuple[LengthSett
 
 def measure_clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: int) -> LengthSetting:
     """The length to set on one clamp of ``clamps`` that hold the part."""
-    carrier, end = toolkit.carrier(tip.carrier), (tip.x, tip.y)
+    carrier, end = toolkit.find_carrier(tip.carrier), (tip.x, tip.y)
     named = f"the {carrier.noun}" if clamps == 1 else carrier.place_name(tip.column, tip.row)
     if carrier.measure == "stroke":
         start, stroke = carrier.place(tip.column, tip.row), 0.0 - toolkit.clamping * travelled
@@ -275,5 +275,5 @@ def measure_clamp_setting(tip: Peg, toolkit: Toolkit, travelled: float, clamps: 
 
 def name_contacts(fixture: Fixture, toolkit: Toolkit) -> list[str]:
     """Names of the contacts of a fixture in a table: their holes or lines; the only clamp has its noun."""
-    clamps = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).contact is CLAMP_TIP]
-    return [toolkit.carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]
+    clamps = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).contact is CLAMP_TIP]
+    return [toolkit.find_carrier(peg.carrier).noun if [peg] == clamps else peg.hole for peg in fixture.pegs]

@@ -12,7 +12,7 @@ from attrs.converters import optional
 
 from workhold.asking.reading import AXES
 from workhold.errors import InputError
-from workhold.limits import real
+from workhold.limits import convert_real
 
 __all__ = [
     "BESIDE_TOP",
@@ -58,12 +58,14 @@ def flip_up_axis(axis: str) -> str:
 
 def bands_of(values: Iterable[Any]) -> tuple[Band | None, ...]:
     """Bands as pairs of floats, None where nothing may touch."""
-    return tuple(None if value is None else (real(value[0]), real(value[1])) for value in values)
+    return tuple(
+        None if value is None else (convert_real(value[0]), convert_real(value[1])) for value in values
+    )
 
 
 def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
     """Loops of (x, y, bulge) as tuples of floats; refuses anything else."""
-    loops = tuple(tuple(tuple(real(one) for one in vertex) for vertex in loop) for loop in values)
+    loops = tuple(tuple(tuple(convert_real(one) for one in vertex) for vertex in loop) for loop in values)
     if any(len(vertex) != 3 or not all(map(isfinite, vertex)) for loop in loops for vertex in loop):
         raise InputError("a loop of the solid cannot be used: give x, y and bulge of every vertex.")
     return loops
@@ -71,7 +73,7 @@ def loops_of(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
 
 def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
     """Numbers as a tuple of floats; refuses one that is not finite."""
-    numbers = tuple(real(value) for value in values)
+    numbers = tuple(convert_real(value) for value in values)
     if not all(map(isfinite, numbers)):
         raise InputError("a height of an upper face of the solid is no length: give it in mm.")
     return numbers
@@ -85,7 +87,7 @@ def runs_of(values: Iterable[Iterable[Any]]) -> tuple[RunRows, ...]:
     """Rows of runs as tuples of floats; refuses anything else."""
     found = []
     for value in values:
-        rows = tuple(tuple(real(one) for one in row) for row in value)
+        rows = tuple(tuple(convert_real(one) for one in row) for row in value)
         flat = [number for row in rows for number in row]
         is_whole = all(len(row) == 3 for row in rows) and all(map(isfinite, flat))
         if not is_whole or (rows and not is_run(rows)):
@@ -160,16 +162,16 @@ class SolidOutline:
     """
 
     axis: str
-    height: float = field(converter=real)
-    peg_height: float = field(converter=real)
-    head_room: float = field(converter=real)
-    least_band: float = field(converter=real)
+    height: float = field(converter=convert_real)
+    peg_height: float = field(converter=convert_real)
+    head_room: float = field(converter=convert_real)
+    least_band: float = field(converter=convert_real)
     bands: tuple[Band | None, ...] = field(converter=bands_of)
     faces: tuple[tuple[int, ...], ...] = field(default=(), converter=numbers_of)
     bottom: Loops | None = field(default=None, converter=optional(loops_of))
     top: Loops | None = field(default=None, converter=optional(loops_of))
     top_heights: tuple[float, ...] = field(default=(), converter=check_reals)
-    low: float = field(default=0.0, converter=real)
+    low: float = field(default=0.0, converter=convert_real)
     runs: tuple[RunRows, ...] = field(default=(), converter=runs_of)
     rising: Loops = field(default=(), converter=loops_of)
     rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)

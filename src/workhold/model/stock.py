@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from workhold.asking.program import StockQuestion
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long, with_names
+from workhold.limits import convert_real, name_number_fields, refuse_long
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves, Stretches, along, find_shares_between_heights
 
@@ -51,7 +51,7 @@ SAME_SHARE = 1e-11
 AT_ONCE = 1 << 19
 
 
-@frozen(field_transformer=with_names)
+@frozen(field_transformer=name_number_fields)
 class Stock(StockQuestion):
     """What the part is cut from.
 
@@ -68,7 +68,7 @@ class Stock(StockQuestion):
         For lengths below 0, and a shape that is not known.
     """
 
-    height: float | None = field(default=None, converter=optional(real))
+    height: float | None = field(default=None, converter=optional(convert_real))
 
     def __attrs_post_init__(self) -> None:
         for name, value in (("side", self.side), ("top", self.top), ("height", self.height or 0.0)):

@@ -15,7 +15,7 @@ from typing import Any
 from attrs import field, frozen
 
 from workhold.errors import InputError
-from workhold.limits import real, refuse_long
+from workhold.limits import convert_real, refuse_long
 
 __all__ = ["MOST_STRAPS", "HandPush", "Strap", "StrapHardware", "StrappedHold"]
 
@@ -40,7 +40,7 @@ class StrapHardware:
     """
 
     count: int = 2
-    tip_radius: float = field(default=6.0, converter=real)
+    tip_radius: float = field(default=6.0, converter=convert_real)
     reach: tuple[float, float] = (20.0, 60.0)
     max_force: float | None = None
 

@@ -14,7 +14,7 @@ from math import pi
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.fixels.pegs import peg_outline
+from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, measure_distance_to_segment, segment_rows
 from workhold.kernels.base.distance import is_inside
@@ -158,10 +158,10 @@ def make_pad_bodies(
     carriers = {one.carrier.name: one for one in shown(fixture, query.toolkit, query.workpiece).carriers}
     for pad in pads:
         center, carrier = fixture.pose.apply(pad.x, pad.y), carriers[pad.carrier]
-        pin = tuple(peg_outline(center, carrier.carrier.peg_radius))
+        pin = tuple(make_peg_outline(center, carrier.carrier.peg_radius))
         slabs = [Slab(pin, (), floor - sizes.plate_thickness, floor)]
         if floor < 0.0:
-            slabs.append(Slab(tuple(peg_outline(center, supports.request.pad_radius)), (), floor, 0.0))
+            slabs.append(Slab(tuple(make_peg_outline(center, supports.request.pad_radius)), (), floor, 0.0))
         yield FixtureBody(
             f"support {pad.hole}", BodyKind.SUPPORT, tuple(slabs), find_opening_direction(carrier)
         )
@@ -189,7 +189,7 @@ def screw(supports: Supports, triple: Triple, fixture: Fixture, sizes: BodySizes
     """The clamp on top, its tip on the upper face at its place."""
     center, low, slabs = fixture.pose.apply(*triple.clamp.at), clamped_height(supports, triple, sizes), []
     for height, share in size_clamp_pieces(low, max(sizes.thickness, sizes.top, sizes.others)):
-        outline = tuple(peg_outline(center, share * supports.request.tip_radius))
+        outline = tuple(make_peg_outline(center, share * supports.request.tip_radius))
         slabs.append(Slab(outline, (), low, low + height))
         low += height
     return FixtureBody("clamp on top", BodyKind.CLAMP, tuple(slabs))

@@ -19,13 +19,13 @@ from attrs import Factory, evolve, field, frozen
 from attrs.converters import optional
 from numpy.typing import ArrayLike, NDArray
 
-from workhold.errors import InputError, quoted
+from workhold.errors import InputError, quote_value
 from workhold.fixels.support_hardware import SupportPads, TopClamp
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import check_vertices, loop_segments
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside
-from workhold.limits import real, refuse_long, refuse_strong, with_names
+from workhold.limits import convert_real, name_number_fields, refuse_long, refuse_strong
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.numbered_outlines import NumberedOutlines
 from workhold.model.requirements import (
@@ -73,16 +73,16 @@ def compute_usual_head(tip_radius: float) -> float:
 def pair_of(values: Any) -> Span:
     """Two numbers in their order."""
     if not isinstance(values, Iterable) or isinstance(values, str) or len(pair := tuple(values)) != 2:
-        raise InputError(f"two numbers cannot be {quoted(values)}: give two.")
-    return real(pair[0]), real(pair[1])
+        raise InputError(f"two numbers cannot be {quote_value(values)}: give two.")
+    return convert_real(pair[0]), convert_real(pair[1])
 
 
 def make_span(value: Any) -> Span:
     """A range of numbers from one number or two, the smaller first."""
     if isinstance(value, Sequence | np.ndarray) and not isinstance(value, str) and len(value) == 2:
-        low, high = (real(one) for one in value)
+        low, high = (convert_real(one) for one in value)
         return (low, high) if low <= high else (high, low)
-    number = real(value)
+    number = convert_real(value)
     return number, number
 
 
@@ -96,14 +96,14 @@ def loops_of(loops: Iterable[Any]) -> Loops:
 
 def rings_of(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, float, float], ...]:
     """Rings as (x, y, least, most); refuses what is none."""
-    rings = [tuple(real(value) for value in ring) for ring in reach]
+    rings = [tuple(convert_real(value) for value in ring) for ring in reach]
     for ring in rings:
         if len(ring) != 4 or not all(map(isfinite, ring)) or not 0 <= ring[2] <= ring[3]:
             raise InputError("a reach is not a ring: give x, y, the least and the most distance in mm.")
     return tuple((x, y, least, most) for x, y, least, most in rings)
 
 
-@frozen(field_transformer=with_names)
+@frozen(field_transformer=name_number_fields)
 class SpatialLoad:
     """A load as it acts in space; force, axial force and moments act together, their ranges by themselves.
 
@@ -130,11 +130,11 @@ class SpatialLoad:
     """
 
     points: tuple[tuple[float, float], ...] = field(default=(), converter=point_pairs)
-    force: float = field(default=0.0, converter=real)
+    force: float = field(default=0.0, converter=convert_real)
     directions: Span = field(default=ANY_DIRECTION, converter=direction_range)
     heights: Span | None = field(default=None, converter=optional(make_span))
     axial: Span = field(default=(0.0, 0.0), converter=make_span)
-    moment: float = field(default=0.0, converter=real)
+    moment: float = field(default=0.0, converter=convert_real)
     tilt: Span = field(default=(0.0, 0.0), converter=pair_of)
     name: str = ""
 
@@ -179,7 +179,7 @@ class SpatialLoad:
         return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
 
 
-@frozen(field_transformer=with_names)
+@frozen(field_transformer=name_number_fields)
 class SupportRequest:
     """What supports and the clamp are, and where they may touch; lengths in mm, the part's coordinates.
 
@@ -217,25 +217,28 @@ class SupportRequest:
     5.0
     """
 
-    thickness: float = field(converter=real)
-    pad_radius: float = field(converter=real)
-    tip_radius: float = field(converter=real)
+    thickness: float = field(converter=convert_real)
+    pad_radius: float = field(converter=convert_real)
+    tip_radius: float = field(converter=convert_real)
     band: Span | None = field(default=None, converter=optional(pair_of))
     bands: tuple[Span | None, ...] | None = None
-    pad_margin: float = field(default=0.0, converter=real)
+    pad_margin: float = field(default=0.0, converter=convert_real)
     bottom: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
     top: Loops | None = field(default=None, converter=optional(loops_of), eq=False)
     bottom_zones: tuple[Zone, ...] = field(default=(), converter=make_zones)
     top_zones: tuple[Zone, ...] = field(default=(), converter=make_zones)
-    inside: float = field(default=Factory(lambda self: self.tip_radius, takes_self=True), converter=real)
+    inside: float = field(
+        default=Factory(lambda self: self.tip_radius, takes_self=True), converter=convert_real
+    )
     reach: tuple[tuple[float, float, float, float], ...] | None = field(
         default=None, converter=optional(rings_of)
     )
     point: Span | None = field(default=None, converter=optional(pair_of))
     top_heights: tuple[float, ...] | None = field(default=None, converter=optional(check_reals))
-    tip_margin: float = field(default=0.0, converter=real)
+    tip_margin: float = field(default=0.0, converter=convert_real)
     head_radius: float = field(
-        default=Factory(lambda self: compute_usual_head(self.tip_radius), takes_self=True), converter=real
+        default=Factory(lambda self: compute_usual_head(self.tip_radius), takes_self=True),
+        converter=convert_real,
     )
     rising: Loops = field(default=(), converter=loops_of, eq=False)
     rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)

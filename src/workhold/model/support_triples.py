@@ -14,7 +14,7 @@ from attrs import evolve, frozen
 
 from workhold.conventions import STEADY
 from workhold.errors import InputError
-from workhold.fixels.carrier import Carrier, hole_name, letter_of
+from workhold.fixels.carrier import Carrier, find_carrier_letter, make_hole_name
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.moved_setup import find_move_to_middle, move_to, shift_hole_numbers
@@ -80,8 +80,8 @@ class SupportPad:
         ('L-C4', '(0,4)')
         """
         if min(self.column, self.row) >= 0:
-            return hole_name(self.carrier, self.column, self.row)
-        letter = letter_of(self.carrier)
+            return make_hole_name(self.carrier, self.column, self.row)
+        letter = find_carrier_letter(self.carrier)
         return f"{letter}{'-' if letter else ''}({self.column + 1},{self.row + 1})"
 
 
@@ -163,9 +163,9 @@ class Supports:
         return f"<Supports: {self.words}>"
 
     def _repr_html_(self) -> str:
-        from workhold.presenting.notebook import supports_html
+        from workhold.presenting.notebook import render_supports_html
 
-        return supports_html(self)
+        return render_supports_html(self)
 
     @property
     def complete(self) -> bool:
@@ -284,7 +284,7 @@ def holes_on(
 ) -> Iterator[tuple[int | None, int | None]]:
     """Columns and rows on a plate that pegs, clamps and supports take up; None for what says nothing."""
     for peg in fixture.pegs:
-        carrier = toolkit.carrier(peg.carrier)
+        carrier = toolkit.find_carrier(peg.carrier)
         if carrier.stands_on == plate.name:
             in_column, in_row = carrier.counted
             yield (peg.column if in_column else None), (peg.row if in_row else None)

@@ -14,7 +14,7 @@ from attrs import define, evolve, field
 from numpy.typing import ArrayLike, NDArray
 
 from workhold.conventions import READING, SHORTEST
-from workhold.errors import InputError, encodable, refuse_kind
+from workhold.errors import InputError, make_encodable, refuse_kind
 from workhold.fixels.carrier import WALL
 from workhold.geometry.hull import HullEdge, hull_edges
 from workhold.geometry.loop import (
@@ -37,7 +37,7 @@ from workhold.geometry.merged_runs import (
     put_arcs_on_one_circle,
 )
 from workhold.geometry.segment import Point, Segment, bounding_box
-from workhold.limits import real, real_array
+from workhold.limits import convert_real, make_real_array
 from workhold.model.numbered_outlines import NumberedOutlines, outer_count, refuse_misplaced_holes, unlike
 from workhold.model.pose import Flush, Pose
 from workhold.model.solid import SolidOutline
@@ -58,7 +58,7 @@ def numbers_of(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
 def checked_name(name: Any) -> str:
     """The name of a part; refuses what is no text."""
     refuse_kind(name, str, "the name of a part", "give text")
-    return encodable(name)
+    return make_encodable(name)
 
 
 # What an editor need not offer: other rooms use it.
@@ -241,7 +241,7 @@ class Workpiece:
         >>> len(plate.faces), round(plate.faces[-1].segment.radius, 6), plate.departure < 0.0004
         (5, 10.0, True)
         """
-        if fit is not None and not (isfinite(real(fit, "the fit")) and fit > 0):
+        if fit is not None and not (isfinite(convert_real(fit, "the fit")) and fit > 0):
             raise InputError(f"the fit {fit} is not usable: give a length above 0, in mm.")
         loops, away, chorded = [], 0.0, []
         for index, points in enumerate([outline, *holes]):
@@ -270,9 +270,9 @@ class Workpiece:
         return self.draw()
 
     def _repr_html_(self) -> str:
-        from workhold.presenting.notebook import workpiece_html
+        from workhold.presenting.notebook import render_workpiece_html
 
-        return workpiece_html(self)
+        return render_workpiece_html(self)
 
     def draw(
         self,
@@ -296,9 +296,9 @@ class Workpiece:
         InputError
             For a unit that is not known, and when the file cannot be written or replaced.
         """
-        from workhold.presenting.papers import workpiece_picture
+        from workhold.presenting.papers import draw_and_save_workpiece
 
-        return workpiece_picture(self, path, peg_radius=peg_radius, unit=unit, overwrite=overwrite)
+        return draw_and_save_workpiece(self, path, peg_radius=peg_radius, unit=unit, overwrite=overwrite)
 
     def to_shapely(self, tolerance: float = 0.01) -> shapely.Polygon | shapely.MultiPolygon:
         """The part as a polygon of shapely in mm, in its own frame; of several pieces a multipolygon.
@@ -436,7 +436,7 @@ def corners_of(points: ArrayLike, loop: str) -> NDArray[np.float64]:
     none.
     """
     try:
-        array = real_array(points, f"{loop}: a coordinate")
+        array = make_real_array(points, f"{loop}: a coordinate")
     except InputError:
         raise
     except (TypeError, ValueError, OverflowError) as error:
@@ -455,7 +455,7 @@ def departure_of(value: float) -> float:
     """The departure of an outline in mm, 0 where it is less than a drawing can mean; refuses what is no
     length.
     """
-    if not (isfinite(real(value, "the departure of the outline")) and value >= 0):
+    if not (isfinite(convert_real(value, "the departure of the outline")) and value >= 0):
         raise InputError(f"the departure {value} of the outline is not a length: give 0 or more, in mm.")
     return 0.0 if value < READING else float(value)
 

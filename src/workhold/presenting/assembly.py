@@ -17,20 +17,26 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
-from workhold.files.glb import bodies_glb, surface_mesh
-from workhold.files.part.data import wrapped_shapes
+from workhold.files.glb import make_bodies_glb, make_surface_mesh
+from workhold.files.part.data import list_wrapped_shapes
 from workhold.files.part.finding import read_bytes
 from workhold.files.part.load import load
 from workhold.files.replacing import refuse_output
-from workhold.files.step.heights import foot_height
-from workhold.files.step.library import along, axis_named, bounding_box, sub_shapes, turn_along
-from workhold.files.step.part_shape import pose_move
-from workhold.files.step.writer import named_solids
+from workhold.files.step.heights import find_foot_height
+from workhold.files.step.library import (
+    check_axis_name,
+    compute_bounding_box,
+    list_sub_shapes,
+    turn_along,
+    turn_axis_up,
+)
+from workhold.files.step.part_shape import make_pose_move
+from workhold.files.step.writer import make_named_solids
 from workhold.model.bodies import COLOURS, BodySizes, FixtureBody, list_fixture_bodies
 from workhold.model.setup import PartZero, part_zero
 from workhold.model.support_bodies import list_bodies_with_supports, size_supported_bodies
 from workhold.model.support_triples import ChosenSupports
-from workhold.presenting.data import library
+from workhold.presenting.data import import_library
 
 if TYPE_CHECKING:
     from workhold.files.step.part_shape import PartShape
@@ -47,7 +53,7 @@ __all__ = [
     "from_build123d",
     "from_cadquery",
     "save_glb",
-    "shape_in",
+    "read_part_shape",
     "to_build123d",
     "to_cadquery",
 ]
@@ -87,7 +93,7 @@ class Assembly:
     shape: PartShape | None = None
 
     @classmethod
-    def of(
+    def from_fixture(
         cls,
         fixture: Fixture,
         result: Result,
@@ -129,7 +135,7 @@ class Assembly:
             )
         )
 
-    def content(self, ending: str, zero: PartZero | None = None) -> bytes:
+    def make_file_content(self, ending: str, zero: PartZero | None = None) -> bytes:
         """Return the bytes of a file with an ending of :data:`GLB_ENDINGS` or :data:`STEP_ENDINGS`.
 
         Parameters
@@ -143,13 +149,13 @@ class Assembly:
         """
         shape, pose = self.shape, self.fixture.pose
         if ending in GLB_ENDINGS:
-            mesh = None if shape is None else surface_mesh(*shape.surface(pose))
-            return bodies_glb(self.bodies, f"{self.bodies[0].name} set-up", mesh)
-        from workhold.files.step.writer import bodies_step
+            mesh = None if shape is None else make_surface_mesh(*shape.place_surface(pose))
+            return make_bodies_glb(self.bodies, f"{self.bodies[0].name} set-up", mesh)
+        from workhold.files.step.writer import make_bodies_step
 
         point = (zero or part_zero(self.result.workpiece)).point
-        solid = None if shape is None else shape.solid(pose)
-        return bodies_step(self.bodies, self.result.toolkit, point, pose, solid)
+        solid = None if shape is None else shape.place_solid(pose)
+        return make_bodies_step(self.bodies, self.result.toolkit, point, pose, solid)
 
     def write(self, path: str | Path) -> None:
         """Write a file of the kind that its ending names.
@@ -157,15 +163,15 @@ class Assembly:
         Raises
         ------
         InputError
-            As :meth:`content`, for another ending, and when the file cannot be written.
+            As :meth:`make_file_content`, for another ending, and when the file cannot be written.
         """
         ending = Path(path).suffix.lower()
         if ending not in GLB_ENDINGS + STEP_ENDINGS:
             raise InputError(f"{path} is not the name of such a file: let it end in .glb or .step.")
-        write_bytes(path, self.content(ending))
+        write_bytes(path, self.make_file_content(ending))
 
 
-def shape_in(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
+def read_part_shape(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
     """Return the shape of a part in the STEP file that it was read from; None without a file.
 
     Raises
@@ -175,10 +181,10 @@ def shape_in(path: str | Path | None, workpiece: Workpiece) -> PartShape | None:
     """
     if path is None:
         return None
-    from workhold.files.step.part_shape import part_shape
+    from workhold.files.step.part_shape import make_part_shape
 
     try:
-        return part_shape(read_bytes(Path(path)), workpiece)
+        return make_part_shape(read_bytes(Path(path)), workpiece)
     except InputError as error:
         raise InputError(f"{Path(path).name}: {error}") from error
 
@@ -199,9 +205,9 @@ def save_glb(
     refuse_output(path, (part,), overwrite)
     chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
     result = fixture.listing.result
-    shape = shape_in(part, result.workpiece)
-    assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen, shape)
-    write_bytes(path, assembly.content(GLB_ENDINGS[0]))
+    shape = read_part_shape(part, result.workpiece)
+    assembly = Assembly.from_fixture(fixture, result, {"thickness": thickness}, chosen, shape)
+    write_bytes(path, assembly.make_file_content(GLB_ENDINGS[0]))
 
 
 def from_build123d(
@@ -234,7 +240,7 @@ def from_build123d(
     """
     return load(
         part,
-        axis=axis_name(up),
+        axis=find_axis_name(up),
         name=name,
         part_number=part_number,
         fit=fit,
@@ -277,7 +283,7 @@ def from_cadquery(
     """
     return load(
         part,
-        axis=axis_name(up),
+        axis=find_axis_name(up),
         name=name,
         part_number=part_number,
         fit=fit,
@@ -290,10 +296,10 @@ def from_cadquery(
     )
 
 
-def axis_name(up: Any) -> str:
+def find_axis_name(up: Any) -> str:
     """Return the name of the axis along a direction, which may be an axis, a plane, a vector or a name.
 
-    >>> axis_name((0, 0, -2))
+    >>> find_axis_name((0, 0, -2))
     '-z'
 
     Raises
@@ -302,7 +308,7 @@ def axis_name(up: Any) -> str:
         For a direction along no axis.
     """
     if isinstance(up, str):
-        return axis_named(up)
+        return check_axis_name(up)
     vector = next((getattr(up, name) for name in ("direction", "zDir", "z_dir") if hasattr(up, name)), up)
     to_tuple = getattr(vector, "toTuple", None)
     try:
@@ -329,14 +335,14 @@ def to_build123d(
     best: int = 1,
 ) -> Any:
     """Make a compound of build123d, see :meth:`workhold.Fixture.to_build123d`."""
-    cad = library("build123d")
+    cad = import_library("build123d")
     children = []
-    for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
+    for name, shape, colour in make_bodies(fixture, around, thickness, supports, best):
         child = cad.Compound.cast(shape)
         child.label = name
         child.color = cad.Color(*colour)
         children.append(child)
-    return cad.Compound(label=title(fixture), children=children)
+    return cad.Compound(label=make_title(fixture), children=children)
 
 
 def to_cadquery(
@@ -348,36 +354,36 @@ def to_cadquery(
     best: int = 1,
 ) -> Any:
     """Make an assembly of CadQuery, see :meth:`workhold.Fixture.to_cadquery`."""
-    cad = library("cadquery")
-    assembly = cad.Assembly(name=title(fixture))
-    for name, shape, colour in bodies_of(fixture, around, thickness, supports, best):
+    cad = import_library("cadquery")
+    assembly = cad.Assembly(name=make_title(fixture))
+    for name, shape, colour in make_bodies(fixture, around, thickness, supports, best):
         assembly.add(cad.Shape.cast(shape), name=name, color=cad.Color(*colour, 1.0))
     return assembly
 
 
-def title(fixture: Fixture) -> str:
+def make_title(fixture: Fixture) -> str:
     listed = fixture.listing
     return f"{listed.result.workpiece.name} fixture {listed.rank}"
 
 
-def bodies_of(
+def make_bodies(
     fixture: Fixture, around: Any, thickness: float | None, supports: Supports | None, best: int
 ) -> list[tuple[str, Any, tuple[float, float, float]]]:
     result = fixture.listing.result
     chosen = None if supports is None else ChosenSupports.under(fixture, supports, best)
-    assembly = Assembly.of(fixture, result, {"thickness": thickness}, chosen)
+    assembly = Assembly.from_fixture(fixture, result, {"thickness": thickness}, chosen)
     if around is None:
-        return named_solids(assembly.bodies)
-    own = own_shape(around)
+        return make_named_solids(assembly.bodies)
+    own = find_own_shape(around)
     move = to_model(own, result.workpiece, assembly.fixture)
     part, *others = assembly.bodies
-    moved = [(name, shape.Moved(move), colour) for name, shape, colour in named_solids(others)]
+    moved = [(name, shape.Moved(move), colour) for name, shape, colour in make_named_solids(others)]
     return [(part.name, own, COLOURS[part.kind]), *moved]
 
 
-def own_shape(part: Any) -> Any:
-    """The shape of Open CASCADE of a part with one solid; refuses a part with none, or with several."""
-    solids = [solid for shape in wrapped_shapes(part) for solid in sub_shapes(shape, "SOLID")]
+def find_own_shape(part: Any) -> Any:
+    """Return the shape of Open CASCADE of a part with one solid; refuse a part with none, or with several."""
+    solids = [solid for shape in list_wrapped_shapes(part) for solid in list_sub_shapes(shape, "SOLID")]
     if len(solids) != 1:
         raise InputError(f"around is a part with {len(solids)} solids: give the one that was designed for.")
     return solids[0]
@@ -394,13 +400,13 @@ def to_model(shape: Any, workpiece: Workpiece, fixture: Fixture) -> Any:
     solid = workpiece.solid
     if solid is None:
         raise InputError("the part was not read from a solid, so it is not known where its model lies.")
-    turned = along(shape, solid.axis)
-    low, high = bounding_box(turned)
+    turned = turn_axis_up(shape, solid.axis)
+    low, high = compute_bounding_box(turned)
     x0, y0, x1, y1 = workpiece.bounds
     room = min(x0 - low[0], y0 - low[1], high[0] - x1, high[1] - y1)
     if room < -SAME_SIZE or abs(high[2] - low[2] - solid.height) > SAME_SIZE:
         raise InputError(f"around is another part than {workpiece.name}: give the one that was designed for.")
     foot = gp_Trsf()
-    foot.SetTranslation(gp_Vec(0.0, 0.0, -foot_height(turned)))
-    there = pose_move(fixture.pose).Multiplied(foot).Multiplied(turn_along(solid.axis))
+    foot.SetTranslation(gp_Vec(0.0, 0.0, -find_foot_height(turned)))
+    there = make_pose_move(fixture.pose).Multiplied(foot).Multiplied(turn_along(solid.axis))
     return TopLoc_Location(there.Inverted())

@@ -15,11 +15,11 @@ from workhold.bending.materials import ElasticMaterial, find_material
 from workhold.bending.shape import KeptShape, PartToBend, PrismShape
 from workhold.drawing.bent_part import colours_of, exaggeration_of
 from workhold.errors import InputError
-from workhold.files.glb import Mesh, bodies_glb, surface_mesh
+from workhold.files.glb import Mesh, make_bodies_glb, make_surface_mesh
 from workhold.files.step.part_shape import PartShape
 from workhold.model.bodies import BodySizes, list_fixture_bodies
 from workhold.model.pose import Pose
-from workhold.presenting.assembly import shape_in
+from workhold.presenting.assembly import read_part_shape
 from workhold.statics.loads import jaw_stiffness
 
 if TYPE_CHECKING:
@@ -92,7 +92,7 @@ def bend_fixture(
 ) -> Bending:
     """Say how far a part is bent, see :meth:`workhold.Fixture.bending`."""
     listed = fixture.listing
-    shape = shape_in(part, listed.result.workpiece)
+    shape = read_part_shape(part, listed.result.workpiece)
     below = {}
     if supports is not None:
         below[listed.row] = find_pads_below(supports, best, shape, clamp_force)
@@ -144,7 +144,7 @@ def bent_mesh(bending: Bending, pose: Pose) -> Mesh:
     facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-30)[:, None]
     # Each triangle has vertices of its own, so that edges stay sharp.
-    return surface_mesh(
+    return make_surface_mesh(
         corners.reshape(-1, 3),
         np.repeat(facing, 3, axis=0),
         np.arange(3 * len(small)).reshape(-1, 3),
@@ -159,4 +159,4 @@ def bent_glb(fixture: Fixture, bending: Bending) -> bytes:
     sizes = BodySizes.of(result.workpiece, thickness=height)
     bodies = list_fixture_bodies(fixture, result.workpiece, result.toolkit, sizes)
     name = f"{bodies[0].name}, bent {exaggeration_of(bending):,.0f} times as far"
-    return bodies_glb(bodies, name, bent_mesh(bending, fixture.pose))
+    return make_bodies_glb(bodies, name, bent_mesh(bending, fixture.pose))

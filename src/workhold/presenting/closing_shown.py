@@ -21,7 +21,7 @@ from workhold.presenting.live_picture import LivePicture
 from workhold.seating.closing_simulation import simulate_closing
 from workhold.seating.solver import Solver
 
-__all__ = ["closing_shown"]
+__all__ = ["show_closing"]
 
 # Of the capture opening, how far what moves is opened, and of the cage, how far the part is turned and
 # shifted: the first with which it comes home is shown.
@@ -34,28 +34,28 @@ VISIBLE = 0.2
 MOST_KEYFRAMES = 120
 
 
-def closing_shown(picture: LivePicture) -> dict[str, Any]:
+def show_closing(picture: LivePicture) -> dict[str, Any]:
     fixture, toolkit = picture.fixture, picture.result.toolkit
     if not toolkit.closes_at_once:
-        return picture.closing(words=order_words(fixture))
+        return picture.describe_closing(words=order_words(fixture))
     try:
         solver = Solver(picture.result.workpiece, toolkit)
         seating = fixture.seating or solver.of(fixture)
-        return closed(picture, solver, seating)
+        return close_fixture(picture, solver, seating)
     except InputError as error:
-        return picture.closing(words=f"The part is held in its place while it is clamped: {error}")
+        return picture.describe_closing(words=f"The part is held in its place while it is clamped: {error}")
 
 
-def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
+def close_fixture(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, Any]:
     """Return the closing of a fixture of a known seating; refuse one without room for the part."""
     fixture, toolkit = picture.fixture, picture.result.toolkit
-    sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.mm())
+    sentences = SeatingSentences(seating, fixture, toolkit, LengthUnit.in_mm())
     most = picture.opened if seating.capture_opening is None else OF_CAPTURE * seating.capture_opening
     opening = min(picture.opened, most)
     if opening < VISIBLE:
         caught = f"The part is caught only while {seating.opened} by less than {opening / OF_CAPTURE:.3f} mm"
-        return picture.closing(words=f"{caught}: hold it in its place while you close.")
-    for pose in starts(picture, fixture, seating):
+        return picture.describe_closing(words=f"{caught}: hold it in its place while you close.")
+    for pose in list_starts(picture, fixture, seating):
         try:
             way = simulate_closing(solver, fixture, seating.seats, pose, opening)
         except InputError:
@@ -64,15 +64,17 @@ def closed(picture: LivePicture, solver: Solver, seating: Seating) -> dict[str, 
             sign = toolkit.clamping
             every = -(-len(way.poses) // MOST_KEYFRAMES)
             keyframes = [
-                picture.keyframe(one, max(sign * (travelled - fixture.travel), 0.0))
+                picture.make_keyframe(one, max(sign * (travelled - fixture.travel), 0.0))
                 for one, travelled in zip(way.poses[::-1][::every], way.travels[::-1][::every], strict=True)
             ]
-            return picture.closing(keyframes[::-1], sentences.ended(way.ending, way.seat, way.travels[-1]))
-    return picture.closing(words="The part is held in its place while it is clamped.")
+            return picture.describe_closing(
+                keyframes[::-1], sentences.describe_ending(way.ending, way.seat, way.travels[-1])
+            )
+    return picture.describe_closing(words="The part is held in its place while it is clamped.")
 
 
-def starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:
-    """Poses to let the part go in: off its place within the cage, ever nearer, and last its place itself."""
+def list_starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:
+    """Yield the poses to let the part go in: off its place within the cage, ever nearer, and last its place itself."""
     middle, cage = picture.result.workpiece.center, seating.cage
     turns, shifts = (-ANY_TURN, ANY_TURN), (0.0, 0.0)
     if cage is not None:

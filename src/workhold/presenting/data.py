@@ -18,15 +18,20 @@ from attrs import asdict, fields
 from attrs.filters import exclude
 
 from workhold.errors import InputError
-from workhold.files.result.fixture_text import column_names, fixture_rows, seating_values
+from workhold.files.result.fixture_text import list_column_names, list_fixture_rows, list_seating_values
 from workhold.files.result.hold_text import hold_entry
-from workhold.files.result.writer import load_entry, proof_entry, toolkit_fields, written
+from workhold.files.result.writer import (
+    convert_to_json_value,
+    load_entry,
+    make_proof_entry,
+    make_toolkit_fields,
+)
 from workhold.fixels.carrier import Carrier
 from workhold.fixels.contacts import FLAT_PIN
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import Face
 from workhold.geometry.segment import Arc, Point, Segment
-from workhold.limits import real
+from workhold.limits import convert_real
 from workhold.model.clamps import order_words
 from workhold.model.fixture import Fixture
 from workhold.model.quality import SEATING_FIGURES
@@ -49,29 +54,29 @@ if TYPE_CHECKING:
     from workhold.verification import Verification
 
 __all__ = [
-    "explanation_data",
-    "explored_data",
-    "finite",
-    "fixture_data",
-    "helps_data",
+    "describe_explanation",
+    "describe_explored",
+    "convert_finite",
+    "describe_fixture",
+    "describe_helps",
     "load_case_data",
-    "part_data",
-    "result_data",
-    "solid_data",
+    "describe_part",
+    "describe_result",
+    "describe_solid",
     "to_arrow",
     "to_pandas",
     "to_shapely",
-    "toolkit_data",
-    "verification_data",
+    "describe_toolkit",
+    "describe_verification",
 ]
 
 
-def finite(value: float) -> float | None:
+def convert_finite(value: float) -> float | None:
     """Return a number, or None for one that JSON does not have."""
     return float(value) if isfinite(value) else None
 
 
-def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
+def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
     """Describe a part and its faces; the remarks are about how it was read."""
     first, loop_of = 0, {}
     for index, loop in enumerate(workpiece.loops):
@@ -83,20 +88,20 @@ def part_data(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, An
         "departure": workpiece.departure,
         "holes": len(workpiece.hole_segments),
         "faces": [
-            {"number": face.number, "loop": loop_of[face.number], **face_data(face)}
+            {"number": face.number, "loop": loop_of[face.number], **describe_face(face)}
             for face in workpiece.faces
         ],
         "remarks": list(remarks),
-        **solid_data(workpiece.solid),
+        **describe_solid(workpiece.solid),
     }
 
 
-def solid_data(solid: SolidOutline | None) -> dict[str, Any]:
+def describe_solid(solid: SolidOutline | None) -> dict[str, Any]:
     """Describe how the solid of an outline stands, and the heights at which each segment is touched."""
     return {} if solid is None else {"solid": asdict(solid, filter=exclude(fields(SolidOutline).low))}
 
 
-def face_data(face: Face) -> dict[str, Any]:
+def describe_face(face: Face) -> dict[str, Any]:
     """Describe a face: a line or an arc, whose sweep is in degrees; loop 0 is the outer one."""
     segment = face.segment
     ends = {"from": list(segment.start), "to": list(segment.end)}
@@ -107,7 +112,7 @@ def face_data(face: Face) -> dict[str, Any]:
     return {"kind": "arc", "concave": segment.sign < 0, **circle, **ends}
 
 
-def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
+def describe_fixture(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) -> dict[str, Any]:
     return {
         **({} if rank is None else {"rank": rank}),
         "type": fixture.type,
@@ -116,13 +121,13 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
             {
                 "hole": peg.hole,
                 "carrier": peg.carrier,
-                "stands_on": stands_on(toolkit.carrier(peg.carrier)),
+                "stands_on": name_carrier(toolkit.find_carrier(peg.carrier)),
                 "column": peg.column,
                 "row": peg.row,
                 "x": peg.x,
                 "y": peg.y,
                 "faces": [peg.face] if peg.beside is None else [peg.face, peg.beside],
-                "force": finite(peg.force),
+                "force": convert_finite(peg.force),
             }
             for peg in fixture.pegs
         ],
@@ -131,11 +136,11 @@ def fixture_data(fixture: Fixture, toolkit: Toolkit, rank: int | None = None) ->
             {"name": one.name, "sign": one.sign, "length": one.length}
             for one in list_length_settings(fixture, toolkit)
         ],
-        **pair_data(fixture),
-        "quality": {key: finite(value) for key, value in fixture.quality.items()},
+        **describe_pair(fixture),
+        "quality": {key: convert_finite(value) for key, value in fixture.quality.items()},
         **({} if fixture.hold is None else hold_data(fixture)),
         **({} if fixture.seating is None else {"seating": fixture.seating.as_fields()}),
-        **by_hand_data(fixture, rank),
+        **describe_by_hand(fixture, rank),
     }
 
 
@@ -146,20 +151,20 @@ def hold_data(fixture: Fixture) -> dict[str, Any]:
     return {"pegs": [], **{name: entry[name] for name in names if name in entry}, "quality": entry["quality"]}
 
 
-def pair_data(fixture: Fixture) -> dict[str, Any]:
+def describe_pair(fixture: Fixture) -> dict[str, Any]:
     """Describe the pair of clamps of a fixture and how to tighten them; empty for other fixtures."""
     if pair := fixture.pair:
-        ratio = [finite(one) for one in pair.ratio]
+        ratio = [convert_finite(one) for one in pair.ratio]
         return {"pairs": pair.count, "ratio": ratio, "order": order_words(fixture)}
     return {}
 
 
-def stands_on(carrier: Carrier) -> str:
-    """Names what a contact stands on: a jaw or a plate by its own name, a wall always ``wall``."""
+def name_carrier(carrier: Carrier) -> str:
+    """Name what a contact stands on: a jaw or a plate by its own name, a wall always ``wall``."""
     return carrier.noun if carrier.contact.is_placed else carrier.contact.name
 
 
-def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
+def describe_by_hand(fixture: Fixture, rank: int | None) -> dict[str, Any]:
     """Describe how the part is put into two clamps, if the result was asked for the seating of this rank."""
     result = None if fixture.listed is None else fixture.listed.result
     if result is None or result.toolkit.closes_at_once or rank is None or rank > (result.query.seating or 0):
@@ -170,29 +175,34 @@ def by_hand_data(fixture: Fixture, rank: int | None) -> dict[str, Any]:
 def load_case_data(case: LoadCase) -> dict[str, Any]:
     return {
         "load": load_entry(case.load),
-        "jaw_force": finite(case.jaw_force),
-        "smallest": [finite(value) for value in case.smallest],
-        "largest": [finite(value) for value in case.largest],
-        "reaction": worst_data(case.reaction),
-        "needed": worst_data(case.needed),
+        "jaw_force": convert_finite(case.jaw_force),
+        "smallest": [convert_finite(value) for value in case.smallest],
+        "largest": [convert_finite(value) for value in case.largest],
+        "reaction": describe_worst(case.reaction),
+        "needed": describe_worst(case.needed),
         "needed_with_friction": None
         if case.needed_with_friction is None
-        else finite(case.needed_with_friction),
+        else convert_finite(case.needed_with_friction),
         "keeps_contact": bool(case.keeps_contact),
     }
 
 
-def worst_data(worst: Worst) -> dict[str, Any]:
+def describe_worst(worst: Worst) -> dict[str, Any]:
     """Describe where and in which direction a load is worst; the peg is counted from 0."""
     x, y = worst.point
-    return {"value": finite(worst.value), "peg": worst.peg, "point": [x, y], "direction": worst.direction}
+    return {
+        "value": convert_finite(worst.value),
+        "peg": worst.peg,
+        "point": [x, y],
+        "direction": worst.direction,
+    }
 
 
-def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
+def describe_result(result: Result, shown: Entries, count: int) -> dict[str, Any]:
     indices, like = (numbers[:count].tolist() for numbers in (shown.index, shown.like))
     return {
         "workpiece": result.workpiece.name,
-        "toolkit": {"kind": result.toolkit.kind, **toolkit_fields(result.toolkit)},
+        "toolkit": {"kind": result.toolkit.kind, **make_toolkit_fields(result.toolkit)},
         "found": {kind: int(number) for kind, number in result.found.items()},
         "distinct": {kind: int(number) for kind, number in result.distinct.items()},
         "listed": len(result),
@@ -200,20 +210,20 @@ def result_data(result: Result, shown: Entries, count: int) -> dict[str, Any]:
         **({"pairs": result.pairs, "seats": result.seats} if result.toolkit.travels > 1 else {}),
         "complete": bool(result.complete),
         "notes": list(map(str, result.notes)),
-        "proof": None if result.proof is None else proof_data(result.proof),
+        "proof": None if result.proof is None else describe_proof(result.proof),
         "ranking": list(result.query.rank_by),
         "least_effective_error": result.least_effective_error,
         "why_first": why_first(result) or None,
         "fixtures": [
-            {**fixture_data(result[index], result.toolkit, index + 1), "like_it": more}
+            {**describe_fixture(result[index], result.toolkit, index + 1), "like_it": more}
             for index, more in zip(indices, like, strict=True)
         ],
     }
 
 
-def proof_data(proof: Proof) -> dict[str, Any]:
+def describe_proof(proof: Proof) -> dict[str, Any]:
     """Describe the proof of a search as a result file does, but with ``faces`` in place of ``segments``."""
-    entry = proof_entry(proof)
+    entry = make_proof_entry(proof)
     lost = [
         {("faces" if key == "segments" else key): value for key, value in one.items()}
         for one in entry["undecided"]
@@ -221,7 +231,7 @@ def proof_data(proof: Proof) -> dict[str, Any]:
     return {**entry, "undecided": lost}
 
 
-def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
+def describe_explanation(explanation: Explanation, toolkit: Toolkit) -> dict[str, Any]:
     """Describe why there is no fixture, and what would help."""
     nearest = explanation.nearest
     return {
@@ -233,12 +243,12 @@ def explanation_data(explanation: Explanation, toolkit: Toolkit) -> dict[str, An
         "asked_words": explanation.asked_words,
         "nearest": None
         if nearest is None
-        else {"words": nearest.words, "fixture": fixture_data(nearest.fixture, toolkit)},
-        "helps": helps_data(explanation, "fields"),
+        else {"words": nearest.words, "fixture": describe_fixture(nearest.fixture, toolkit)},
+        "helps": describe_helps(explanation, "fields"),
     }
 
 
-def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
+def describe_helps(explanation: Explanation, key: str) -> list[dict[str, Any]]:
     """Describe what would help, with the changed fields of the toolkit under a key."""
     return [
         {
@@ -247,25 +257,25 @@ def helps_data(explanation: Explanation, key: str) -> list[dict[str, Any]]:
             "complete": help.complete,
             key: None
             if help.fields is None
-            else {name: written(value) for name, value in help.fields.items()},
+            else {name: convert_to_json_value(value) for name, value in help.fields.items()},
         }
         for help in explanation.helps
     ]
 
 
-def toolkit_data(loaded: LoadedToolkit) -> dict[str, Any]:
+def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
     return {
         "name": loaded.name,
         "kind": loaded.kind,
         "title": loaded.title,
         "source": loaded.source,
         "assumed": list(loaded.assumed),
-        "fields": toolkit_fields(loaded.toolkit),
+        "fields": make_toolkit_fields(loaded.toolkit),
         "tolerance": asdict(loaded.tolerance),
     }
 
 
-def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
+def describe_explored(found: Iterable[Explored]) -> list[dict[str, Any]]:
     """Describe how well each toolkit holds a part."""
     return [
         {
@@ -275,14 +285,14 @@ def explored_data(found: Iterable[Explored]) -> list[dict[str, Any]]:
             "found": dict(item.found),
             "fit": bool(item.fit),
             "held_share": round(item.held, 9),
-            "figures": {key: finite(value) for key, value in item.figures.items()},
+            "figures": {key: convert_finite(value) for key, value in item.figures.items()},
             "reason": item.reason,
         }
         for item in found
     ]
 
 
-def verification_data(outcome: Verification) -> dict[str, Any]:
+def describe_verification(outcome: Verification) -> dict[str, Any]:
     """Describe what was proven of a result; fixtures are named by their rank."""
     return {
         "holds": outcome.holds,
@@ -313,24 +323,24 @@ REQUIREMENTS = {
 
 def to_pandas(result: Result) -> DataFrame:
     """Make a DataFrame, see :meth:`workhold.Result.to_pandas`."""
-    frame: DataFrame = library("pandas").DataFrame(columns_of(result))
+    frame: DataFrame = import_library("pandas").DataFrame(make_columns(result))
     return frame
 
 
 def to_arrow(result: Result) -> pyarrow.Table:
     """Make a table of Arrow, see :meth:`workhold.Result.to_arrow`."""
-    return library("pyarrow").table(columns_of(result))
+    return import_library("pyarrow").table(make_columns(result))
 
 
 def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
     """Make a polygon of shapely, see :meth:`workhold.Workpiece.to_shapely`."""
-    if not 0 < real(tolerance, "the tolerance") < inf:
+    if not 0 < convert_real(tolerance, "the tolerance") < inf:
         raise InputError(
             f"the tolerance {tolerance:g} of an outline is not usable: give a length above 0, in mm."
         )
-    polygons = library("shapely")
+    polygons = import_library("shapely")
     rings = [
-        [point for segment in loop for point in chord_starts(segment, tolerance)]
+        [point for segment in loop for point in split_into_chords(segment, tolerance)]
         for loop in workpiece.loop_segments
     ]
     outer, holes = rings[: workpiece.pieces], rings[workpiece.pieces :]
@@ -342,8 +352,8 @@ def to_shapely(workpiece: Workpiece, tolerance: float) -> Any:
     return pieces[0] if len(pieces) == 1 else polygons.MultiPolygon(pieces)
 
 
-def chord_starts(segment: Segment, tolerance: float) -> list[Point]:
-    """The starts of the fewest equal chords of a segment that are no farther from it than a tolerance in mm."""
+def split_into_chords(segment: Segment, tolerance: float) -> list[Point]:
+    """Return the starts of the fewest equal chords of a segment that are no farther from it than a tolerance in mm."""
     if not isinstance(segment, Arc):
         return [segment.start]
     widest = 2 * acos(max(1.0 - tolerance / segment.radius, 0.5))
@@ -353,7 +363,7 @@ def chord_starts(segment: Segment, tolerance: float) -> list[Point]:
     return [segment.start, *((x + segment.radius * cos(a), y + segment.radius * sin(a)) for a in angles[1:])]
 
 
-def library(name: str) -> Any:
+def import_library(name: str) -> Any:
     try:
         return import_module(name)
     except ImportError as error:
@@ -362,14 +372,14 @@ def library(name: str) -> Any:
         ) from error
 
 
-def columns_of(result: Result) -> dict[str, Any]:
+def make_columns(result: Result) -> dict[str, Any]:
     """Return columns by name: numbers as arrays (N,), words as lists; lengths in mm, angles in degrees."""
     toolkit = result.toolkit
-    names, count = column_names(result), 6 * toolkit.peg_count
+    names, count = list_column_names(result), 6 * toolkit.peg_count
     titles = np.array([one.title for one in toolkit.arrangements])
     carriers = [[toolkit.carriers[k] for k in one.carriers] for one in toolkit.arrangements]
     blocks: list[list[Any]] = []
-    for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
+    for kinds, rows in list_fixture_rows(result.table, toolkit, result.workpiece):
         looks: list[Any] = []
         if FLAT_PIN in toolkit.contacts:
             *before, flats = zip(*rows, strict=True)
@@ -391,7 +401,7 @@ def columns_of(result: Result) -> dict[str, Any]:
     )
     columns = [np.arange(1, len(result) + 1), *joined]
     if result.seating:
-        columns += list(np.array(seating_values(result)).T)
+        columns += list(np.array(list_seating_values(result)).T)
     return {
         name: column.tolist() if column.dtype.kind == "U" else column
         for name, column in zip(names, columns, strict=True)

@@ -18,20 +18,20 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
-    "counted_text",
-    "edgeless",
+    "format_ranked_figure",
+    "mark_edgeless",
     "is_edgeless",
-    "figure_text",
-    "figure_words",
-    "figures_shown",
-    "fixture_title",
-    "heading",
-    "no_edge",
-    "peg_groups",
+    "format_figure_number",
+    "format_figure",
+    "list_shown_figures",
+    "make_fixture_title",
+    "make_heading",
+    "find_edgeless_distance",
+    "group_peg_columns",
     "place_of",
-    "rounded",
-    "short_heading",
-    "unit_of",
+    "format_rounded",
+    "make_short_heading",
+    "find_figure_unit",
 ]
 
 # Columns of which the figure's name is too wide: how far open the part is caught, by what a wrong seat reads
@@ -41,8 +41,9 @@ SHORT = {"capture_opening": "caught", "reading": "reads"}
 EDGE, SAME_SHARE = "edge_distance", 1e-9
 
 
-def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
-    """The figures that a table of a result has columns for, and those of them that fixtures are ranked by.
+def list_shown_figures(result: Result) -> tuple[list[Figure], list[Figure]]:
+    """Return the figures that a table of a result has columns for, and those of them that fixtures are ranked
+    by.
 
     The location error and the program's clearance are shown in any case where they are known. Of seating
     there are how wide open the part is caught and what a reading must show.
@@ -70,24 +71,25 @@ def figures_shown(result: Result) -> tuple[list[Figure], list[Figure]]:
     return figures, ranked
 
 
-def fixture_title(fixture: Fixture) -> str:
+def make_fixture_title(fixture: Fixture) -> str:
     """Return what a fixture of a result is called, such as "Fixture 2 of 40 of bracket"."""
     listed = fixture.listing
     return f"Fixture {listed.rank:,} of {listed.count:,} of {listed.result.workpiece.name}"
 
 
-def short_heading(figure: Figure, unit: Unit) -> str:
+def make_short_heading(figure: Figure, unit: Unit) -> str:
     """Return a figure's name, or what it is called where that is too wide, and its unit."""
-    return f"{SHORT.get(figure.key, figure.words)} {unit_of(figure, unit)}".rstrip()
+    return f"{SHORT.get(figure.key, figure.words)} {find_figure_unit(figure, unit)}".rstrip()
 
 
-def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
-    """The names of the carriers whose pegs stand in one column of a table, by its heading: all clamps in one.
+def group_peg_columns(toolkit: Toolkit) -> dict[str, list[str]]:
+    """Return the names of the carriers whose pegs stand in one column of a table, by its heading: all clamps
+    in one.
 
     >>> from workhold import Plate, Vise
-    >>> peg_groups(Vise(pitch=10, columns=2, peg_radius=3))
+    >>> group_peg_columns(Vise(pitch=10, columns=2, peg_radius=3))
     {'left holes': ['left'], 'right holes': ['right']}
-    >>> peg_groups(Plate(pitch=20, peg_radius=5, columns=8, rows=6))
+    >>> group_peg_columns(Plate(pitch=20, peg_radius=5, columns=8, rows=6))
     {'locators': ['plate'], 'clamp': ['clamp -x', 'clamp -y']}
     """
     groups: dict[str, list[str]] = {}
@@ -103,86 +105,87 @@ def peg_groups(toolkit: Toolkit) -> dict[str, list[str]]:
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """Return the name of a peg's hole or line, without the noun of a clamp."""
-    carrier = toolkit.carrier(peg.carrier)
+    carrier = toolkit.find_carrier(peg.carrier)
     return peg.hole.removeprefix(f"{carrier.noun} ") if carrier.contact is CLAMP_TIP else peg.hole
 
 
-def heading(figure: Figure, unit: Unit) -> str:
+def make_heading(figure: Figure, unit: Unit) -> str:
     """Return a figure's name and unit."""
-    return f"{figure.words} {unit_of(figure, unit)}".rstrip()
+    return f"{figure.words} {find_figure_unit(figure, unit)}".rstrip()
 
 
-def unit_of(figure: Figure, unit: Unit) -> str:
+def find_figure_unit(figure: Figure, unit: Unit) -> str:
     shown = {"mm": unit.abbreviation, "mm²": f"{unit.abbreviation}²", "MPa": unit.pressure, "N": unit.force}
     return shown.get(figure.unit, figure.unit)
 
 
-def rounded(value: float, decimals: int) -> str:
+def format_rounded(value: float, decimals: int) -> str:
     """Format a number with so many decimals, and zero without a sign.
 
-    >>> rounded(-1e-15, 3), rounded(-0.5, 1)
+    >>> format_rounded(-1e-15, 3), format_rounded(-0.5, 1)
     ('0.000', '-0.5')
     """
     text = f"{value:.{decimals}f}"
     return text.removeprefix("-") if float(text) == 0 else text
 
 
-def no_edge(workpiece: Workpiece, toolkit: Toolkit) -> float:
+def find_edgeless_distance(workpiece: Workpiece, toolkit: Toolkit) -> float:
     """Return the edge distance in mm of contacts that have no edge, as figures have it."""
     from workhold.statics.contact_matrix import wrench_length
 
     return wrench_length(workpiece, toolkit)
 
 
-def edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
-    """Figures by name, with an infinite edge distance for the length that stands for no edge.
+def mark_edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
+    """Return the figures by name, with an infinite edge distance for the length that stands for no edge.
 
     Parameters
     ----------
-    longest : that length in mm, which is on no part, see :func:`no_edge`.
+    longest : that length in mm, which is on no part, see :func:`find_edgeless_distance`.
     """
     return {**figures, EDGE: inf} if is_edgeless(figures, longest) else dict(figures)
 
 
 def is_edgeless(figures: Mapping[str, float], longest: float) -> bool:
-    """Return whether the edge distance among figures stands for no edge, see :func:`edgeless`."""
+    """Return whether the edge distance among figures stands for no edge, see :func:`mark_edgeless`."""
     return EDGE in figures and figures[EDGE] >= longest * (1 - SAME_SHARE)
 
 
-def figure_text(figure: Figure, value: float, unit: Unit) -> str:
+def format_figure_number(figure: Figure, value: float, unit: Unit) -> str:
     """Format a figure's value as a number of its unit; in words where it is infinite or not known."""
     if not isfinite(value):
         return "-" if isnan(value) else "none" if figure.key in ("reading", EDGE) else "any"
     if figure.unit == "MPa":
-        return unit.stress_number(value)
+        return unit.format_stress_number(value)
     # A caliper reads hundredths of a millimetre.
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
     if figure.unit == "mm":
         return unit.number(value, decimals)
-    return rounded(value / size_of(figure, unit), figure.decimals)
+    return format_rounded(value / find_unit_size(figure, unit), figure.decimals)
 
 
-def size_of(figure: Figure, unit: Unit) -> float:
+def find_unit_size(figure: Figure, unit: Unit) -> float:
     """Return how much in mm or N the unit is in which a figure is shown."""
     return {"mm": unit.millimetres, "mm²": unit.millimetres**2, "N": unit.newtons}.get(figure.unit, 1.0)
 
 
-def figure_words(figure: Figure, value: float, unit: Unit) -> str:
+def format_figure(figure: Figure, value: float, unit: Unit) -> str:
     """Return a figure's value with its unit, in words alone where it is infinite or not known."""
-    return f"{figure_text(figure, value, unit)} {unit_of(figure, unit) if isfinite(value) else ''}".rstrip()
+    behind = find_figure_unit(figure, unit) if isfinite(value) else ""
+    return f"{format_figure_number(figure, value, unit)} {behind}".rstrip()
 
 
-def counted_text(figure: Figure, value: float, unit: Unit) -> str:
+def format_ranked_figure(figure: Figure, value: float, unit: Unit) -> str:
     """Format a figure's value, rounded as the ranking rounds it in mm, in a unit."""
     from math import floor, log10
 
     if not isfinite(value):
-        return figure_text(figure, value, unit)
+        return format_figure_number(figure, value, unit)
     counts = float(f"{round(value, 9):.1e}")
-    size = size_of(figure, unit)
+    size = find_unit_size(figure, unit)
     shown = counts / size
     if figure.decimals == 0 or shown == 0:
-        return rounded(shown, 0)
+        return format_rounded(shown, 0)
     # In mm and N two digits are all there is to show; in another unit one more keeps what differs apart.
     digits = 2 if size == 1 else 3
-    return rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))
+    return format_rounded(shown, max(digits - 1 - floor(log10(abs(shown))), 0))

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from workhold.contact.curves import CurveTable, curve_table, loosened
 from workhold.contact.problem import Problem
 from workhold.errors import InputError
-from workhold.files.result.writer import toolkit_fields
+from workhold.files.result.writer import make_toolkit_fields
 from workhold.fixels.vise import Vise
 from workhold.kernels.base.feature import (
     AXIS_X,
@@ -47,7 +47,7 @@ from workhold.model.workpiece import Workpiece
 from workhold.search.design import answer
 from workhold.search.toolkit_search import lattice_steps
 
-__all__ = ["lesson"]
+__all__ = ["compute_lesson"]
 
 # Columns of a feature's row that a browser needs.
 FEATURE = [IS_ARC, X, Y, AXIS_X, AXIS_Y, HALF_EXTENT, RADIUS, SIGN]
@@ -111,7 +111,7 @@ class CurveFixture:
         )
 
 
-def lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
+def compute_lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
     """Make the lesson of a part.
 
     Parameters
@@ -128,15 +128,15 @@ def lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
     InputError
         When no vise tried has a Type I fixture on two chord curves.
     """
-    avoided = short_faces(workpiece)
+    avoided = list_short_faces(workpiece)
     best: tuple[float, Problem, Result, list[CurveFixture]] | None = None
-    for query in queries(workpiece, avoided):
+    for query in make_queries(workpiece, avoided):
         try:
             problem, result = Problem.of(query), answer(query, cancel=cancel)
         except InputError:
             # The pegs of this vise fit nowhere along the part.
             continue
-        found = sorted(on_curves(problem, result), key=lambda one: -min(one.room, ROOM))
+        found = sorted(find_fixtures_on_curves(problem, result), key=lambda one: -min(one.room, ROOM))
         if found and (best is None or found[0].room > best[0]):
             best = found[0].room, problem, result, found
         if best is not None and best[0] >= ROOM:
@@ -146,35 +146,35 @@ def lesson(workpiece: Workpiece, cancel: Event | None = None) -> dict[str, Any]:
             f"no vise that was tried holds {workpiece.name} with two pegs on each jaw that could slide: "
             "choose a part with more sides, or one that is less round."
         )
-    return lesson_data(*best[1:], len(avoided))
+    return describe_lesson(*best[1:], len(avoided))
 
 
-def short_faces(workpiece: Workpiece) -> tuple[int, ...]:
+def list_short_faces(workpiece: Workpiece) -> tuple[int, ...]:
     """Return the numbers of all faces but the longest ones."""
     faces = sorted(workpiece.faces, key=lambda face: -face.segment.length)
     return tuple(face.number for face in faces[MOST_FACES:])
 
 
-def queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
+def make_queries(workpiece: Workpiece, avoided: tuple[int, ...]) -> Iterator[Query]:
     """Make what is asked of one vise after the other, those with one column first."""
     x0, y0, x1, y1 = workpiece.bounds
     for columns in (1, 2):
         for share in PITCHES:
-            pitch = rounded(share * min(x1 - x0, y1 - y0))
-            vise = Vise(pitch, columns, rounded(PEG * pitch))
+            pitch = round_to_two_digits(share * min(x1 - x0, y1 - y0))
+            vise = Vise(pitch, columns, round_to_two_digits(PEG * pitch))
             yield Query(workpiece, vise, types=("I",), restrictions=Restrictions(avoid=avoided))
 
 
-def rounded(length: float) -> float:
+def round_to_two_digits(length: float) -> float:
     """Return a length to two digits.
 
-    >>> rounded(17.3), rounded(0.4567)
+    >>> round_to_two_digits(17.3), round_to_two_digits(0.4567)
     (17.0, 0.46)
     """
     return float(f"{length:.2g}")
 
 
-def on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
+def find_fixtures_on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
     """Return the fixtures of a result of which both pairs of pegs stand on chord curves, in its order."""
     frame = problem.frame
     steps = lattice_steps(frame.carriers, problem.diameter)
@@ -182,7 +182,8 @@ def on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
     out = []
     for rank, fixture in enumerate(result, 1):
         first, second = (
-            range_of(problem, table, fixture, pair) or range_of(problem, table, fixture, pair[::-1], True)
+            find_chord_range(problem, table, fixture, pair)
+            or find_chord_range(problem, table, fixture, pair[::-1], True)
             for pair in (fixture.pegs[:2], fixture.pegs[2:])
         )
         if first is not None and second is not None:
@@ -190,7 +191,7 @@ def on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
     return out
 
 
-def range_of(
+def find_chord_range(
     problem: Problem, table: CurveTable, fixture: Fixture, pegs: tuple[Peg, ...], swapped: bool = False
 ) -> ChordRange | None:
     """Return the chord on which two pegs of a fixture stand, None where they stand on a sliding pair."""
@@ -199,7 +200,7 @@ def range_of(
     places = [
         (float(x) - center[0], float(y) - center[1]) for x, y in (inverse.apply(peg.x, peg.y) for peg in pegs)
     ]
-    ends = [feature_of(problem, peg.face, place) for peg, place in zip(pegs, places, strict=True)]
+    ends = [find_feature(problem, peg.face, place) for peg, place in zip(pegs, places, strict=True)]
     step = head.column - tail.column, head.row - tail.row
     psi = -radians(fixture.pose.theta_deg)
     numbers, reals = table.curves.integers, table.curves.reals
@@ -215,21 +216,23 @@ def range_of(
     return None
 
 
-def feature_of(problem: Problem, face: int, place: tuple[float, float]) -> int:
-    """The number of the feature of a face that a peg's centre lies on, about the centre of the part's box."""
+def find_feature(problem: Problem, face: int, place: tuple[float, float]) -> int:
+    """Return the number of the feature of a face that a peg's centre lies on, about the centre of the part's box."""
     (own,) = np.nonzero(problem.faces == face)
     return int(
         max(own, key=lambda k: distance_to_end(problem.rows[k], parameter_on(problem.rows[k], *place)))
     )
 
 
-def lesson_data(problem: Problem, result: Result, found: list[CurveFixture], avoided: int) -> dict[str, Any]:
+def describe_lesson(
+    problem: Problem, result: Result, found: list[CurveFixture], avoided: int
+) -> dict[str, Any]:
     part = problem.workpiece
     features: NDArray[np.float64] = problem.rows[:, FEATURE] + np.array([0, *part.center, 0, 0, 0, 0, 0])
     return {
         "name": part.name,
         "loops": [loop.tolist() for loop in part.loops],
-        "toolkit": toolkit_fields(result.toolkit),
+        "toolkit": make_toolkit_fields(result.toolkit),
         "features": features.tolist(),
         "faces": problem.faces.tolist(),
         "faces_left_out": avoided,
@@ -237,11 +240,11 @@ def lesson_data(problem: Problem, result: Result, found: list[CurveFixture], avo
         "curves": result.statistics["chord_curves"],
         "pairs": result.statistics["curve_pairs"],
         "on_curves": len(found),
-        "fixtures": [curve_fixture_data(one) for one in found[:MOST_FIXTURES]],
+        "fixtures": [describe_curve_fixture(one) for one in found[:MOST_FIXTURES]],
     }
 
 
-def curve_fixture_data(one: CurveFixture) -> dict[str, Any]:
+def describe_curve_fixture(one: CurveFixture) -> dict[str, Any]:
     fixture = one.fixture
     return {
         "rank": one.rank,

@@ -17,16 +17,16 @@ from typing import Any
 
 from attrs import evolve, frozen
 
-from workhold.drawing.bench import Bench, bench_of
-from workhold.drawing.panel import fixture_words
-from workhold.drawing.scene import Box, Scene, View, text_width
+from workhold.drawing.bench import Bench, make_bench
+from workhold.drawing.panel import describe_fixture
+from workhold.drawing.scene import Box, Scene, View, measure_text
 from workhold.drawing.supports_drawn import (
     SUPPORT,
     PlannedSupports,
+    choose_lettering_size,
     draw_pad,
     draw_tip,
     draw_triangle,
-    size_of,
 )
 from workhold.errors import InputError
 from workhold.geometry.segment import Point
@@ -37,13 +37,19 @@ from workhold.model.result import Result
 from workhold.model.setup import list_length_settings
 from workhold.model.support_triples import ChosenSupports, Supports
 from workhold.presenting.figure_words import (
-    edgeless,
-    figure_words,
-    figures_shown,
-    fixture_title,
-    no_edge,
+    find_edgeless_distance,
+    format_figure,
+    list_shown_figures,
+    make_fixture_title,
+    mark_edgeless,
 )
-from workhold.presenting.moving_picture import draw_ground, draw_peg, drawn_back, moving_group, ways_of
+from workhold.presenting.moving_picture import (
+    add_moving_group,
+    draw_ground,
+    draw_peg,
+    find_clamping_directions,
+    measure_draw_back,
+)
 from workhold.statics.loads import describe_jaw, load_cases
 from workhold.supports.asking import fixture_supports
 from workhold.supports.words import explain_no_set
@@ -83,7 +89,7 @@ class TriedForce:
     direction: float
 
     @classmethod
-    def of(cls, numbers: Sequence[float]) -> TriedForce:
+    def from_numbers(cls, numbers: Sequence[float]) -> TriedForce:
         """Make a push of four numbers, in the order of its fields.
 
         Raises
@@ -129,7 +135,7 @@ class LivePicture:
     under: Supports | None = None
 
     @classmethod
-    def of(
+    def from_result(
         cls, result: Result, index: int, usual: float, asked: Mapping[str, Any] | None = None
     ) -> LivePicture:
         """Return the picture of the fixture of an index.
@@ -144,8 +150,8 @@ class LivePicture:
             # With supports all may stand further on, so that each hole is there.
             stands = ChosenSupports.of(under).recounted.fixture
             fixture = fixture if stands.pegs == fixture.pegs else evolve(stands, seating=None)
-        bench = bench_of(fixture, result.workpiece, result.toolkit)
-        view = View.fitting(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
+        bench = make_bench(fixture, result.workpiece, result.toolkit)
+        view = View.fit_box(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
         return cls(result, fixture, bench, view, usual, under)
 
     @property
@@ -153,20 +159,22 @@ class LivePicture:
         """What the fixture is called, how it holds, and what to set."""
         toolkit = self.result.toolkit
         set_to = ", ".join(
-            f"{one.sign} = {MILLIMETRE.text(one.length)}"
+            f"{one.sign} = {MILLIMETRE.format_length(one.length)}"
             for one in list_length_settings(self.fixture, toolkit)
         )
         under = "" if self.under is None else f" {set_words(self.under)}"
-        return f"{fixture_title(self.fixture)}. {fixture_words(self.fixture, toolkit)}; {set_to}.{under}"
+        return (
+            f"{make_fixture_title(self.fixture)}. {describe_fixture(self.fixture, toolkit)}; {set_to}.{under}"
+        )
 
     @property
     def figures(self) -> list[list[str]]:
         """Names of the figures that count, with their values and units."""
         unit, part = MILLIMETRE, self.result.workpiece
-        known = edgeless(self.fixture.figures, no_edge(part, self.result.toolkit))
+        known = mark_edgeless(self.fixture.figures, find_edgeless_distance(part, self.result.toolkit))
         return [
-            [one.words, figure_words(one, known[one.key], unit)]
-            for one in figures_shown(self.result)[0]
+            [one.words, format_figure(one, known[one.key], unit)]
+            for one in list_shown_figures(self.result)[0]
             if one.key in known
         ]
 
@@ -175,33 +183,36 @@ class LivePicture:
         x, y = self.view(self.fixture.pose.apply(*self.result.workpiece.center))
         return float(x), float(y)
 
-    def svg(self) -> str:
+    def draw_svg(self) -> str:
         """Return the picture, with its groups as in ``presenting.moving_picture``."""
         bench, view = self.bench, self.view
-        scene = Scene.page(PAGE, fixture_title(self.fixture))
+        scene = Scene.make_page(PAGE, make_fixture_title(self.fixture))
         draw_ground(scene, bench, view)
-        ways = ways_of(bench)
+        ways = find_clamping_directions(bench)
         if self.under is not None and self.under.triples:
             self.draw_set(scene, ChosenSupports.of(self.under), ways)
         for number in bench.placed:
-            group = moving_group(scene, view, ways.get(self.fixture.pegs[number].carrier))
+            group = add_moving_group(scene, view, ways.get(self.fixture.pegs[number].carrier))
             draw_peg(group, bench, view, number)
             self.write_name(group, number)
-        return scene.svg()
+        return scene.to_svg()
 
     def draw_set(self, scene: Scene, chosen: ChosenSupports, ways: Mapping[str, Point | None]) -> None:
         """Draw a set of three with the names of its holes; each moves with the jaw that it stands on.
 
         ``ways`` has by its name in which way each carrier clamps; None for those that stand still.
         """
-        planned, view = PlannedSupports.of(chosen), self.view
-        corners, radius = [view(place) for place in planned.places], size_of(planned.pad_radius, view)
+        planned, view = PlannedSupports.from_chosen(chosen), self.view
+        corners, radius = (
+            [view(place) for place in planned.places],
+            choose_lettering_size(planned.pad_radius, view),
+        )
         draw_triangle(scene.group("stands"), corners)
         for pad, (x, y) in zip(chosen.pads, corners, strict=True):
-            group, below = moving_group(scene, view, ways.get(pad.carrier)), (x, y + radius + PAD_NAME)
+            group, below = add_moving_group(scene, view, ways.get(pad.carrier)), (x, y + radius + PAD_NAME)
             draw_pad(group, (x, y), radius)
-            group.text(below, pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0)
-        draw_tip(scene.group("stands"), view(planned.clamp), size_of(planned.tip_radius, view))
+            group.add_text(below, pad.hole, PAD_NAME, "middle", bold=True, fill=SUPPORT, halo=3.0)
+        draw_tip(scene.group("stands"), view(planned.clamp), choose_lettering_size(planned.tip_radius, view))
 
     def write_name(self, scene: Scene, number: int) -> None:
         """Write the hole of a peg beside it, away from the part and within the page.
@@ -209,21 +220,21 @@ class LivePicture:
         That of a clamp stands beside its body, which is behind the tip.
         """
         peg, (_, (nx, ny)) = self.fixture.pegs[number], self.bench.contacts[number]
-        (x, y), radius = self.view((peg.x, peg.y)), self.bench.radius(self.view, number)
-        half = text_width(peg.hole, NAME, bold=True) / 2
-        dx, dy = (nx, ny) if self.result.toolkit.carrier(peg.carrier).has_lattice else (-ny, nx)
+        (x, y), radius = self.view((peg.x, peg.y)), self.bench.get_page_radius(self.view, number)
+        half = measure_text(peg.hole, NAME, bold=True) / 2
+        dx, dy = (nx, ny) if self.result.toolkit.find_carrier(peg.carrier).has_lattice else (-ny, nx)
         aside = radius + OFF + abs(dx) * (half - NAME / 2)
         along = 0.0 if (dx, dy) == (nx, ny) else half * nx
         at = min(max(x + aside * dx + along, half), PAGE[0] - half), y - aside * dy
-        scene.text(at, peg.hole, NAME, "middle", bold=True, halo=3.0)
+        scene.add_text(at, peg.hole, NAME, "middle", bold=True, halo=3.0)
 
-    def arrow(self, push: TriedForce) -> list[float]:
+    def compute_push_arrow(self, push: TriedForce) -> list[float]:
         """Return the arrow of a push on the page: x and y of the point it acts at, and of its tip."""
         (x, y), length = self.view(self.fixture.pose.apply(push.x, push.y)), push.size * USUAL / self.usual
         angle = radians(push.direction + self.fixture.pose.theta_deg)
         return [float(x), float(y), float(x + length * cos(angle)), float(y - length * sin(angle))]
 
-    def push(self, arrow: Sequence[float]) -> TriedForce:
+    def read_push(self, arrow: Sequence[float]) -> TriedForce:
         """Return the push of an arrow on the page, in whole newtons; of size 0 for one that is too short.
 
         Raises
@@ -231,7 +242,7 @@ class LivePicture:
         InputError
             When the arrow is not four finite numbers.
         """
-        x, y, to_x, to_y = TriedForce.of(arrow).numbers
+        x, y, to_x, to_y = TriedForce.from_numbers(arrow).numbers
         view, pose = self.view, self.fixture.pose
         at = pose.inverse.apply((x - view.left) / view.scale, (view.top - y) / view.scale)
         length = hypot(to_x - x, to_y - y)
@@ -240,7 +251,8 @@ class LivePicture:
         return TriedForce(float(at[0]), float(at[1]), size, turn % 360.0)
 
     def answer(self, push: TriedForce, jaw_force: float | None, jaw: str | float) -> dict[str, Any]:
-        """What a push does: the contact forces as arrows and bars, and whether the fixture holds, in words.
+        """Return what a push does: the contact forces as arrows and bars, and whether the fixture holds, in
+        words.
 
         Parameters
         ----------
@@ -282,7 +294,7 @@ class LivePicture:
         else:
             words.append(f"With {case.jaw_force:,.0f} N a peg lets go.")
         return {
-            "arrow": self.arrow(push),
+            "arrow": self.compute_push_arrow(push),
             "size": f"{push.size:,.0f} N",
             "forces": [
                 {
@@ -290,7 +302,7 @@ class LivePicture:
                     "words": "lets go" if force < -NOTHING * most else f"{max(force, 0.0):,.0f} N",
                     "share": abs(force) / most,
                     "pulls": force < -NOTHING * most,
-                    "arrow": self.force_arrow(number, length * force),
+                    "arrow": self.compute_force_arrow(number, length * force),
                 }
                 for number, (peg, force) in enumerate(zip(self.fixture.pegs, case.largest, strict=True))
             ],
@@ -298,8 +310,8 @@ class LivePicture:
             "words": " ".join(words),
         }
 
-    def force_arrow(self, number: int, length: float) -> list[float]:
-        """The arrow of a contact force on the part; it points away from the part for a length below 0."""
+    def compute_force_arrow(self, number: int, length: float) -> list[float]:
+        """Return the arrow of a contact force on the part; it points away from the part for a length below 0."""
         contact, (nx, ny) = self.bench.contacts[number]
         x, y = self.view(contact)
         return [float(x), float(y), float(x - length * nx), float(y + length * ny)]
@@ -311,16 +323,16 @@ class LivePicture:
         far = max(OPEN_PITCHES * self.bench.shown.pitch, OPEN_SHARE * extent.width)
         for clamp in self.bench.shown.clamps:
             # A clamp is drawn back no farther than to its least stroke.
-            back = drawn_back(clamp)
+            back = measure_draw_back(clamp)
             far = far if back is None else min(far, back)
         return max(far, 0.0)
 
-    def closing(self, keyframes: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
-        """What is shown of a closing; without keyframes what moves comes, and the part waits in its place."""
+    def describe_closing(self, keyframes: Sequence[Sequence[float]] = (), words: str = "") -> dict[str, Any]:
+        """Return what is shown of a closing; without keyframes what moves comes, and the part waits in its place."""
         plain = [[0.0, 0.0, 0.0, self.opened], [0.0, 0.0, 0.0, 0.0]]
         return {"center": list(self.center), "keyframes": list(keyframes) or plain, "words": words}
 
-    def keyframe(self, pose: Pose, opened: float) -> list[float]:
+    def make_keyframe(self, pose: Pose, opened: float) -> list[float]:
         """Return the keyframe in which the part lies in a pose and what moves is open by so many mm."""
         x, y = self.view(pose.apply(*self.result.workpiece.center))
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0

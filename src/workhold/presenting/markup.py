@@ -14,11 +14,20 @@ from collections.abc import Sequence
 from html import escape
 from io import StringIO
 
-from workhold.drawing.render import svg_to_png
+from workhold.drawing.render import convert_svg_to_png
 from workhold.drawing.scene import SVG_NAMESPACE
-from workhold.errors import plain
+from workhold.errors import make_printable
 
-__all__ = ["LARGE", "MOST_SVG", "Markup", "compact", "image", "paragraph", "safe", "table"]
+__all__ = [
+    "LARGE",
+    "MOST_SVG",
+    "Markup",
+    "compact_svg",
+    "make_image",
+    "make_paragraph",
+    "escape_html",
+    "make_table",
+]
 
 # Width of a page that is shown by itself, in pixels.
 LARGE = 900
@@ -35,25 +44,25 @@ COORDINATES = ("d", "x", "y", "x1", "y1", "x2", "y2", "cx", "cy", "r", "width", 
 
 
 class Markup(str):
-    """Text that is HTML already, which :func:`safe` leaves as it is."""
+    """Text that is HTML already, which :func:`escape_html` leaves as it is."""
 
     __slots__ = ()
 
 
-def safe(words: str) -> Markup:
-    """Text as HTML that shows it; what is HTML already stays.
+def escape_html(words: str) -> Markup:
+    """Return the text as HTML that shows it; what is HTML already stays.
 
-    >>> safe("<b> & co"), safe(Markup("<b>"))
+    >>> escape_html("<b> & co"), escape_html(Markup("<b>"))
     ('&lt;b&gt; &amp; co', '<b>')
     """
-    return words if isinstance(words, Markup) else Markup(escape(plain(words)))
+    return words if isinstance(words, Markup) else Markup(escape(make_printable(words)))
 
 
-def paragraph(*pieces: str) -> Markup:
-    return Markup(f"<p>{' '.join(map(safe, pieces))}</p>")
+def make_paragraph(*pieces: str) -> Markup:
+    return Markup(f"<p>{' '.join(map(escape_html, pieces))}</p>")
 
 
-def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
+def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
     """Return a table; a column whose heading begins with ``>`` is flush right, all others are flush left.
 
     Which way is said twice: some sanitizers take away styles, and some pages have styles that win.
@@ -62,34 +71,34 @@ def table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
 
     def row(cells: Sequence[str], tag: str) -> str:
         made = (
-            f'<{tag} align="{way}" style="text-align:{way}" nowrap>{safe(cell)}</{tag}>'
+            f'<{tag} align="{way}" style="text-align:{way}" nowrap>{escape_html(cell)}</{tag}>'
             for cell, way in zip(cells, ways, strict=True)
         )
         return f"<tr>{''.join(made)}</tr>"
 
-    head = row([safe(heading.removeprefix(">")) for heading in headings], "th")
+    head = row([escape_html(heading.removeprefix(">")) for heading in headings], "th")
     body = "\n".join(row(cells, "td") for cells in rows)
     return Markup(f"<table><thead>{head}</thead>\n<tbody>{body}</tbody></table>")
 
 
-def image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
+def make_image(svg: str, words: str, width: int, shrinks: bool = True) -> Markup:
     """Return a picture, ``width`` pixels wide, as an image; ``words`` stand where it cannot be shown.
 
     A picture of more than :data:`MOST_SVG` bytes, or :data:`MOST_PAGE` of a page, becomes one of pixels.
     ``shrinks`` says whether it gets narrower in a narrow page; in a table it should not, as its column would.
     """
-    drawn, kind = compact(svg).encode("utf-8"), "svg+xml"
+    drawn, kind = compact_svg(svg).encode("utf-8"), "svg+xml"
     if len(drawn) > (MOST_PAGE if width >= LARGE else MOST_SVG):
-        drawn, kind = svg_to_png(svg, SHARP * width), "png"
+        drawn, kind = convert_svg_to_png(svg, SHARP * width), "png"
     wide = "" if shrinks else f' style="min-width:{width}px"'
     held = b64encode(drawn).decode("ascii")
     return Markup(
-        f'<img src="data:image/{kind};base64,{held}" width="{width}"{wide} alt="{escape(plain(words))}">'
+        f'<img src="data:image/{kind};base64,{held}" width="{width}"{wide} alt="{escape(make_printable(words))}">'
     )
 
 
-def compact(svg: str) -> str:
-    """A picture in fewer bytes: no space between elements, few decimals, what is alike written once."""
+def compact_svg(svg: str) -> str:
+    """Return a picture in fewer bytes: no space between elements, few decimals, what is alike written once."""
     ET.register_namespace("", SVG_NAMESPACE)
     root = ET.parse(StringIO(svg)).getroot()
     for element in root.iter():
@@ -98,18 +107,18 @@ def compact(svg: str) -> str:
             element.text = None
         for name in COORDINATES:
             if name in element.attrib:
-                element.set(name, FRACTION.sub(rounded, element.get(name, "")))
+                element.set(name, FRACTION.sub(round_match, element.get(name, "")))
     for group in root.iter(f"{{{SVG_NAMESPACE}}}g"):
-        hoist(group)
+        hoist_attributes(group)
     return ET.tostring(root, encoding="unicode")
 
 
-def rounded(match: re.Match[str]) -> str:
+def round_match(match: re.Match[str]) -> str:
     text = f"{float(match[0]):.{DECIMALS}f}".removesuffix(".0")
     return "0" if text == "-0" else text
 
 
-def hoist(group: ET.Element) -> None:
+def hoist_attributes(group: ET.Element) -> None:
     """Give a group what all of its children say of themselves, where they inherit it."""
     if len(group) < 2:
         return

@@ -17,16 +17,16 @@ from workhold.drawing.carriers import (
     draw_plate,
     draw_push,
     draw_wall,
-    most_holes,
+    limit_holes_drawn,
 )
 from workhold.drawing.scene import Scene, View, number
 from workhold.geometry.segment import Point
 from workhold.model.clamps import ShownClamp
 
-__all__ = ["draw_ground", "draw_peg", "drawn_back", "moving_group", "ways_of"]
+__all__ = ["draw_ground", "draw_peg", "measure_draw_back", "add_moving_group", "find_clamping_directions"]
 
 
-def moving_group(scene: Scene, view: View, clamping: Point | None, **attributes: str) -> Scene:
+def add_moving_group(scene: Scene, view: View, clamping: Point | None, **attributes: str) -> Scene:
     """Add a group for what stands still, or for what clamps in a direction of the plan."""
     if clamping is None:
         return scene.group("stands", None, **attributes)
@@ -34,13 +34,13 @@ def moving_group(scene: Scene, view: View, clamping: Point | None, **attributes:
     return scene.group("moves", None, data_way=f"{x * scale:.9g} {-y * scale:.9g}", **attributes)
 
 
-def ways_of(bench: Bench) -> dict[str, Point | None]:
+def find_clamping_directions(bench: Bench) -> dict[str, Point | None]:
     """Return the direction in which each carrier clamps, by its name; None for those that stand still."""
     ways = {one.carrier.name: one.clamping for one in bench.shown.carriers}
     return ways | {one.carrier.name: one.clamping for one in bench.shown.clamps}
 
 
-def drawn_back(clamp: ShownClamp) -> float | None:
+def measure_draw_back(clamp: ShownClamp) -> float | None:
     """Return how far in mm a clamp can be drawn back from where it clamps; None where only its line is known.
 
     Below 0 for a clamp that does not reach its tip from its hole.
@@ -55,21 +55,23 @@ def drawn_back(clamp: ShownClamp) -> float | None:
 def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
     """Draw plates, walls, clamps and the part, whose group has the class ``part``."""
     for carrier in bench.shown.carriers:
-        group = moving_group(scene, view, carrier.clamping)
+        group = add_moving_group(scene, view, carrier.clamping)
         draw_plate(group, carrier, view, 5.0)
-        draw_holes(group, carrier, view, most_holes(view, bench.shown))
+        draw_holes(group, carrier, view, limit_holes_drawn(view, bench.shown))
     for wall in bench.shown.walls:
         draw_wall(scene.group("wall"), wall.bar, view, has_ends=wall.standouts is not None)
     for clamp in bench.shown.clamps:
-        back = drawn_back(clamp)
+        back = measure_draw_back(clamp)
         most = {} if back is None else {"data_most": number(max(back, 0.0))}
-        group = moving_group(scene, view, clamp.clamping, **most)
+        group = add_moving_group(scene, view, clamp.clamping, **most)
         draw_clamp(group, clamp, bench.shown.carriers[0], view, 1.0)
     if bench.shown.jaws is not None:
         draw_flat_jaws(scene.group("jaws"), bench.shown.jaws, view)
     draw_part(scene, bench, view, 1.0)
     for clamp in bench.shown.clamps:
-        draw_push(moving_group(scene, view, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0)
+        draw_push(
+            add_moving_group(scene, view, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0
+        )
 
 
 def draw_peg(scene: Scene, bench: Bench, view: View, number: int) -> None:

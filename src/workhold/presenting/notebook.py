@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING, Any
 from attrs import frozen
 
 from workhold.conventions import STEADY
-from workhold.drawing.bench import bench_of, draw_bench
+from workhold.drawing.bench import draw_bench, make_bench
 from workhold.drawing.fixture_pictures import draw_thumbnail
-from workhold.drawing.panel import fixture_words
+from workhold.drawing.panel import describe_fixture
 from workhold.drawing.scene import Box, Scene, View
-from workhold.drawing.seating_words import sentence
+from workhold.drawing.seating_words import capitalize_sentence
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.errors import InputError
-from workhold.listing.identity import Entries, entries
+from workhold.listing.identity import Entries, make_entries
 from workhold.model.quality import RANKED, SEATING_FIGURES
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -31,20 +31,20 @@ from workhold.model.setup import list_length_settings
 from workhold.model.support_triples import ChosenSupports
 from workhold.presenting.data import REQUIREMENTS
 from workhold.presenting.figure_words import (
-    counted_text,
-    edgeless,
-    figure_text,
-    figures_shown,
-    fixture_title,
-    no_edge,
-    peg_groups,
+    find_edgeless_distance,
+    find_figure_unit,
+    format_figure_number,
+    format_ranked_figure,
+    format_rounded,
+    group_peg_columns,
+    list_shown_figures,
+    make_fixture_title,
+    make_short_heading,
+    mark_edgeless,
     place_of,
-    rounded,
-    short_heading,
-    unit_of,
 )
-from workhold.presenting.markup import LARGE, Markup, image, paragraph, safe, table
-from workhold.presenting.papers import fixture_picture, workpiece_picture
+from workhold.presenting.markup import LARGE, Markup, escape_html, make_image, make_paragraph, make_table
+from workhold.presenting.papers import draw_and_save_fixture, draw_and_save_workpiece
 from workhold.supports.words import explain_no_set, set_headings, set_row
 from workhold.units import MILLIMETRE
 
@@ -59,52 +59,58 @@ __all__ = [
     "MOST_ROWS",
     "StillPicture",
     "WhyNone",
-    "fixture_html",
-    "none_html",
-    "result_html",
-    "result_widget",
-    "seating_html",
-    "supports_html",
-    "thumbnail",
-    "why_none",
-    "workpiece_html",
+    "render_fixture_html",
+    "render_no_fixtures_html",
+    "render_result_html",
+    "make_result_widget",
+    "render_seating_html",
+    "render_supports_html",
+    "make_thumbnail",
+    "explain_no_fixtures",
+    "render_workpiece_html",
 ]
 
 # Entries of a result that are shown, and the width of their pictures in pixels.
 MOST_ROWS, SMALL = 6, 200
 
 
-def result_html(result: Result) -> str:
+def render_result_html(result: Result) -> str:
     """Show a result, see :class:`workhold.Result`: its first entries with their pictures and figures."""
     if not len(result):
-        return none_html(result)
-    shown = entries(result)
+        return render_no_fixtures_html(result)
+    shown = make_entries(result)
     if not len(shown.index):
-        shown = entries(result, with_unfit=True)
-    title = Markup(f"<b>{safe(sentence(result.words))}</b>")
+        shown = make_entries(result, with_unfit=True)
+    title = Markup(f"<b>{escape_html(capitalize_sentence(result.words))}</b>")
     return "\n".join(
-        (paragraph(title), entries_table(result, shown), paragraph(*count_sentences(result, shown)))
+        (
+            make_paragraph(title),
+            make_entries_table(result, shown),
+            make_paragraph(*count_sentences(result, shown)),
+        )
     )
 
 
-def none_html(result: Result) -> str:
+def render_no_fixtures_html(result: Result) -> str:
     toolkit, found = result.toolkit, sum(result.found.values())
     inside = toolkit.wording.inside.partition(" ")[0]
-    title = Markup(f"<b>{safe(f'No fixture of {result.workpiece.name} {inside} a {toolkit.noun}')}</b>")
+    title = Markup(
+        f"<b>{escape_html(f'No fixture of {result.workpiece.name} {inside} a {toolkit.noun}')}</b>"
+    )
     more = Markup(
         "<code>result.why_none()</code> says what each rule takes away, what comes nearest, "
         "and what would help."
     )
     # What was found was ruled out later, or not all was looked at.
     is_open = found or not result.complete
-    return "\n".join(map(paragraph, (title, *map(str, result.notes), *([] if is_open else [more]))))
+    return "\n".join(map(make_paragraph, (title, *map(str, result.notes), *([] if is_open else [more]))))
 
 
-def entries_table(result: Result, shown: Entries) -> Markup:
+def make_entries_table(result: Result, shown: Entries) -> Markup:
     toolkit, unit = result.toolkit, MILLIMETRE
-    figures, ranked = figures_shown(result)
-    longest = no_edge(result.workpiece, toolkit)
-    groups = peg_groups(toolkit)
+    figures, ranked = list_shown_figures(result)
+    longest = find_edgeless_distance(result.workpiece, toolkit)
+    groups = group_peg_columns(toolkit)
     headings = (
         ">rank",
         "picture",
@@ -112,7 +118,7 @@ def entries_table(result: Result, shown: Entries) -> Markup:
         *groups,
         f">{toolkit.moving.measure} {unit.abbreviation}",
         ">angle deg",
-        *(f">{short_heading(figure, unit)}" for figure in figures),
+        *(f">{make_short_heading(figure, unit)}" for figure in figures),
         "type",
     )
     rows = []
@@ -122,28 +128,28 @@ def entries_table(result: Result, shown: Entries) -> Markup:
             " ".join(place_of(peg, toolkit) for peg in fixture.pegs if peg.carrier in names)
             for names in groups.values()
         ]
-        known = edgeless(fixture.figures, longest)
+        known = mark_edgeless(fixture.figures, longest)
         rows.append(
             (
                 str(index + 1),
-                thumbnail(fixture),
+                make_thumbnail(fixture),
                 f"+{like:,}" if like else "",
                 *holes,
                 " ".join(
                     unit.number(setting.length, unit.decimals)
                     for setting in list_length_settings(fixture, toolkit)
                 ),
-                rounded(fixture.pose.written_deg, 3),
+                format_rounded(fixture.pose.written_deg, 3),
                 *(
-                    (counted_text if figure in ranked[:-1] else figure_text)(
+                    (format_ranked_figure if figure in ranked[:-1] else format_figure_number)(
                         figure, known.get(figure.key, nan), unit
                     )
                     for figure in figures
                 ),
-                toolkit.arrangement(fixture.type, fixture.direction).title,
+                toolkit.find_arrangement(fixture.type, fixture.direction).title,
             )
         )
-    return table(headings, rows)
+    return make_table(headings, rows)
 
 
 def count_sentences(result: Result, shown: Entries) -> list[str]:
@@ -157,37 +163,44 @@ def count_sentences(result: Result, shown: Entries) -> list[str]:
     return [*out, *map(str, result.notes)]
 
 
-def thumbnail(fixture: Fixture) -> Markup:
+def make_thumbnail(fixture: Fixture) -> Markup:
     result = fixture.listing.result
     drawn = draw_thumbnail(fixture, result.workpiece, result.toolkit)
-    return image(drawn, f"{fixture_title(fixture)}: {fixture_words(fixture, result.toolkit)}", SMALL, False)
+    return make_image(
+        drawn, f"{make_fixture_title(fixture)}: {describe_fixture(fixture, result.toolkit)}", SMALL, False
+    )
 
 
-def fixture_html(fixture: Fixture) -> str | None:
+def render_fixture_html(fixture: Fixture) -> str | None:
     """Show a fixture: its picture to set it up from and its figures; None for one of no result."""
     if fixture.listed is None:
         return None
-    words = f"{fixture_title(fixture)}: {fixture_words(fixture, fixture.listing.result.toolkit)}"
-    return "\n".join((paragraph(image(fixture_picture(fixture), words, LARGE)), figures_table(fixture)))
+    words = f"{make_fixture_title(fixture)}: {describe_fixture(fixture, fixture.listing.result.toolkit)}"
+    return "\n".join(
+        (
+            make_paragraph(make_image(draw_and_save_fixture(fixture), words, LARGE)),
+            make_figures_table(fixture),
+        )
+    )
 
 
-def workpiece_html(workpiece: Workpiece) -> str:
+def render_workpiece_html(workpiece: Workpiece) -> str:
     """Show a workpiece: the part with its faces numbered."""
-    return paragraph(image(workpiece_picture(workpiece), repr(workpiece).strip("<>"), LARGE))
+    return make_paragraph(make_image(draw_and_save_workpiece(workpiece), repr(workpiece).strip("<>"), LARGE))
 
 
-def figures_table(fixture: Fixture) -> Markup:
+def make_figures_table(fixture: Fixture) -> Markup:
     result, unit = fixture.listing.result, MILLIMETRE
     noun = result.toolkit.moving.noun
-    known = edgeless(fixture.figures, no_edge(result.workpiece, result.toolkit))
+    known = mark_edgeless(fixture.figures, find_edgeless_distance(result.workpiece, result.toolkit))
     rows = []
     for figure in RANKED:
         if figure.key in known:
             words, meaning = figure.named_for(noun)
             better = "more" if figure.more_is_better else "less"
-            value = figure_text(figure, known[figure.key], unit)
-            rows.append((words, value, unit_of(figure, unit), better, meaning))
-    return table(("figure", ">value", "unit", "better", "meaning"), rows)
+            value = format_figure_number(figure, known[figure.key], unit)
+            rows.append((words, value, find_figure_unit(figure, unit), better, meaning))
+    return make_table(("figure", ">value", "unit", "better", "meaning"), rows)
 
 
 # Sets of three, seats, and changes that would help, of which so many are shown; the widths of the pictures of
@@ -197,50 +210,50 @@ OF_SET, WIDE = 240, 320
 PAGE, RIM = (360.0, 270.0), 8.0
 
 
-def supports_html(supports: Supports) -> str:
+def render_supports_html(supports: Supports) -> str:
     """Show the supports of a fixture: the best sets of three with the clamp on top, or why there is none."""
-    title = paragraph(Markup(f"<b>{safe(sentence(supports.words))}</b>"))
+    title = make_paragraph(Markup(f"<b>{escape_html(capitalize_sentence(supports.words))}</b>"))
     if not supports.triples:
-        return "\n".join((title, paragraph(explain_no_set(supports, MILLIMETRE))))
+        return "\n".join((title, make_paragraph(explain_no_set(supports, MILLIMETRE))))
     loaded = bool(supports.loads)
     headings = (">rank", "picture", *set_headings(MILLIMETRE, loaded))
     rows = [
-        (str(rank), supports_picture(supports, rank), *set_row(triple, MILLIMETRE, loaded))
+        (str(rank), draw_supports_picture(supports, rank), *set_row(triple, MILLIMETRE, loaded))
         for rank, triple in enumerate(supports.triples[:MOST_SETS], 1)
     ]
     notes = [
         "The clamp presses at this point of the part's coordinates. If the last figure is at "
-        f"least {MILLIMETRE.text(STEADY)}, the part stands before it is clamped."
+        f"least {MILLIMETRE.format_length(STEADY)}, the part stands before it is clamped."
     ]
     if loaded:
         notes.append(f"Forces are for a closing force of {supports.jaw_force:.0f} N, without friction.")
     if len(supports.triples) > MOST_SETS:
         notes.insert(0, f"{MOST_SETS} of {len(supports.triples):,} sets of three shown.")
-    return "\n".join((title, table(headings, rows), paragraph(*notes)))
+    return "\n".join((title, make_table(headings, rows), make_paragraph(*notes)))
 
 
-def supports_picture(supports: Supports, rank: int) -> Markup:
+def draw_supports_picture(supports: Supports, rank: int) -> Markup:
     chosen = ChosenSupports.of(supports, rank)
     query = supports.query
-    bench = bench_of(chosen.recounted.fixture, query.workpiece, query.toolkit)
-    scene = Scene.page(PAGE, query.workpiece.name)
-    view = View.fitting(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
+    bench = make_bench(chosen.recounted.fixture, query.workpiece, query.toolkit)
+    scene = Scene.make_page(PAGE, query.workpiece.name)
+    view = View.fit_box(bench.extent, Box(0.0, 0.0, *PAGE).grown(-RIM))
     draw_bench(scene, bench, view, weight=0.7, longest=26.0, axes=False)
-    draw_supports(scene, PlannedSupports.of(chosen), view)
+    draw_supports(scene, PlannedSupports.from_chosen(chosen), view)
     names = ", ".join(pad.hole for pad in chosen.pads)
-    return image(scene.svg(), f"Supports in {names} under {query.workpiece.name}", OF_SET, False)
+    return make_image(scene.to_svg(), f"Supports in {names} under {query.workpiece.name}", OF_SET, False)
 
 
-def seating_html(seating: Seating) -> str:
+def render_seating_html(seating: Seating) -> str:
     """Show a seating: its figures, and where else closing can come to rest."""
     unit, known = MILLIMETRE, seating.figures
     figures = [
-        (one.words, figure_text(one, known[one.key], unit), unit_of(one, unit), one.meaning)
+        (one.words, format_figure_number(one, known[one.key], unit), find_figure_unit(one, unit), one.meaning)
         for one in SEATING_FIGURES
     ]
     pieces = [
-        paragraph(Markup(f"<b>{safe(sentence(seating.words))}</b>")),
-        table(("figure", ">value", "unit", "meaning"), figures),
+        make_paragraph(Markup(f"<b>{escape_html(capitalize_sentence(seating.words))}</b>")),
+        make_table(("figure", ">value", "unit", "meaning"), figures),
     ]
     own = next((seat for seat in seating.seats if seat.is_own), None)
     rows = []
@@ -254,20 +267,22 @@ def seating_html(seating: Seating) -> str:
             (
                 str(number),
                 unit.number(seat.difference),
-                rounded(turned, 1),
+                format_rounded(turned, 1),
                 "over" if seat.mirrored else "up",
                 "-" if depth is None or not isfinite(depth) else unit.number(depth),
                 "right" if seat.is_own else "same place" if seat.same_place else "wrong",
             )
         )
     of = unit.abbreviation
-    pieces.append(paragraph("Places in which the part can come to rest:"))
+    pieces.append(make_paragraph("Places in which the part can come to rest:"))
     pieces.append(
-        table((">seat", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies"), rows)
+        make_table((">seat", f">differs {of}", ">turned by", "side", f">held {of}", "how it lies"), rows)
     )
     if len(seating.seats) > MOST_SEATS:
-        pieces.append(paragraph(f"{MOST_SEATS} of {len(seating.seats):,} seats shown."))
-    return "\n".join([*pieces, *map(paragraph, (f"{sentence(words)}." for words in seating.warnings))])
+        pieces.append(make_paragraph(f"{MOST_SEATS} of {len(seating.seats):,} seats shown."))
+    return "\n".join(
+        [*pieces, *map(make_paragraph, (f"{capitalize_sentence(words)}." for words in seating.warnings))]
+    )
 
 
 @frozen(repr=False)
@@ -295,28 +310,28 @@ class WhyNone:
         return f"<WhyNone: {self.words}>"
 
     def _repr_html_(self) -> str:
-        pieces = [paragraph(Markup(f"<b>{safe(self.words)}</b>"))]
+        pieces = [make_paragraph(Markup(f"<b>{escape_html(self.words)}</b>"))]
         explanation, toolkit = self.explanation, self.query.toolkit
         if explanation.removals:
             rows = [
                 (one.rule, f"{one.before:,}", f"{one.removed:,}", f"{one.after:,}")
                 for one in explanation.removals
             ]
-            pieces.append(table(("rule", ">sets of four contacts", ">removed", ">left"), rows))
+            pieces.append(make_table(("rule", ">sets of four contacts", ">removed", ">left"), rows))
         if explanation.nearest is not None:
             drawn = draw_thumbnail(explanation.nearest.fixture, self.query.workpiece, toolkit)
             words = f"Nearest miss: {explanation.nearest.words}"
-            pieces += [paragraph(words), paragraph(image(drawn, words, WIDE))]
+            pieces += [make_paragraph(words), make_paragraph(make_image(drawn, words, WIDE))]
         helps = [
             (one.change, f"{one.fixtures:,}" if one.complete else f"over {one.fixtures:,}")
             for one in explanation.helps[:MOST_HELPS]
         ]
-        nothing = paragraph("No single change that was tried helps.")
-        pieces.append(table(("what would help", ">fixtures"), helps) if helps else nothing)
+        nothing = make_paragraph("No single change that was tried helps.")
+        pieces.append(make_table(("what would help", ">fixtures"), helps) if helps else nothing)
         return "\n".join(pieces)
 
 
-def why_none(result: Result) -> WhyNone:
+def explain_no_fixtures(result: Result) -> WhyNone:
     """Explain a result without fixtures, see :meth:`workhold.Result.why_none`."""
     from workhold.search.explaining import explain
 
@@ -346,10 +361,10 @@ class StillPicture:
 
     def _repr_html_(self) -> str:
         words = f"This picture moves with another library: pip install '{REQUIREMENTS['anywidget']}'."
-        return f"{fixture_html(self.result[self.rank - 1])}\n{paragraph(words)}"
+        return f"{render_fixture_html(self.result[self.rank - 1])}\n{make_paragraph(words)}"
 
 
-def result_widget(
+def make_result_widget(
     result: Result,
     rank: int,
     *,

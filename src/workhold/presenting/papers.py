@@ -8,24 +8,24 @@ from hashlib import file_digest
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from workhold.asking.declaring import values_of
+from workhold.asking.declaring import collect_declared_values
 from workhold.asking.sheet import SheetQuestion
 from workhold.conventions import AGREEMENT
-from workhold.drawing.fixture_pictures import best_at_a_glance, draw_fixture
+from workhold.drawing.fixture_pictures import draw_best_thumbnails, draw_fixture
 from workhold.drawing.part_pictures import draw_features
-from workhold.drawing.path_drawn import planned_path
+from workhold.drawing.path_drawn import make_planned_path
 from workhold.drawing.render import render
-from workhold.drawing.sheet_facts import placing_of
+from workhold.drawing.sheet_facts import find_placing
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
-from workhold.listing.identity import entries
+from workhold.listing.identity import make_entries
 from workhold.model.moved_setup import move_fixture_by_holes
 from workhold.model.setup import part_zero
 from workhold.model.support_triples import ChosenSupports
-from workhold.presenting.assembly import STEP_ENDINGS, Assembly, shape_in
-from workhold.presenting.markup import LARGE, image
-from workhold.units import unit_named
+from workhold.presenting.assembly import STEP_ENDINGS, Assembly, read_part_shape
+from workhold.presenting.markup import LARGE, make_image
+from workhold.units import find_unit
 
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
@@ -38,12 +38,12 @@ __all__ = [
     "MODEL_ENDINGS",
     "PAPER_ENDINGS",
     "Picture",
-    "fixture_picture",
-    "model_bytes",
-    "pages_bytes",
-    "result_picture",
+    "draw_and_save_fixture",
+    "make_model_file",
+    "make_pages_file",
+    "draw_and_save_result",
     "save_sheet",
-    "workpiece_picture",
+    "draw_and_save_workpiece",
     "write_model",
     "write_paper",
 ]
@@ -55,10 +55,10 @@ class Picture(str):
     __slots__ = ()
 
     def _repr_html_(self) -> str:
-        return image(self, "A picture of workhold", LARGE)
+        return make_image(self, "A picture of workhold", LARGE)
 
     def save(self, path: str | Path, *, overwrite: bool = False) -> Picture:
-        """Write the picture and returns it.
+        """Write the picture and return it.
 
         Parameters
         ----------
@@ -75,12 +75,12 @@ class Picture(str):
         return self
 
 
-def saved(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
+def save_picture(svg: str, path: str | Path | None, overwrite: bool) -> Picture:
     picture = Picture(svg)
     return picture if path is None else picture.save(path, overwrite=overwrite)
 
 
-def workpiece_picture(
+def draw_and_save_workpiece(
     workpiece: Workpiece,
     path: str | Path | None = None,
     *,
@@ -89,10 +89,12 @@ def workpiece_picture(
     overwrite: bool = False,
 ) -> Picture:
     """Draw the workpiece with its faces numbered, see :meth:`workhold.Workpiece.draw`."""
-    return saved(draw_features(workpiece, peg_radius=peg_radius, unit=unit_named(unit)), path, overwrite)
+    return save_picture(
+        draw_features(workpiece, peg_radius=peg_radius, unit=find_unit(unit)), path, overwrite
+    )
 
 
-def fixture_picture(
+def draw_and_save_fixture(
     fixture: Fixture,
     path: str | Path | None = None,
     *,
@@ -103,20 +105,20 @@ def fixture_picture(
     """Draw the fixture to set up from, see :meth:`workhold.Fixture.draw`."""
     listed = fixture.listing
     words = f"Fixture {listed.rank} of {listed.count}" if title is None else title
-    result, planned = listed.result, planned_path(listed.result, listed.row)
+    result, planned = listed.result, make_planned_path(listed.result, listed.row)
     svg = draw_fixture(
-        fixture, result.workpiece, result.toolkit, title=words, unit=unit_named(unit), path=planned
+        fixture, result.workpiece, result.toolkit, title=words, unit=find_unit(unit), path=planned
     )
-    return saved(svg, path, overwrite)
+    return save_picture(svg, path, overwrite)
 
 
-def result_picture(
+def draw_and_save_result(
     result: Result, path: str | Path | None = None, *, unit: str = "mm", overwrite: bool = False
 ) -> Picture:
     """Draw thumbnails of the best fixtures, see :meth:`workhold.Result.draw`."""
     if not len(result):
         raise InputError(" ".join(("there is no fixture to draw.", *map(str, result.reasons))))
-    return saved(best_at_a_glance(result, entries(result), unit_named(unit)), path, overwrite)
+    return save_picture(draw_best_thumbnails(result, make_entries(result), find_unit(unit)), path, overwrite)
 
 
 PAPER_ENDINGS = (".pdf", ".svg", ".png")
@@ -151,7 +153,7 @@ def save_sheet(
     refuse_output(path, (result_file, part), overwrite)
     if result_file is not None:
         refuse_other_result(result_file, fixture)
-    settings = {**values_of(SheetQuestion(**asked)), "unit": unit_named(unit)}
+    settings = {**collect_declared_values(SheetQuestion(**asked)), "unit": find_unit(unit)}
     if supports is not None:
         if ending in MODEL_ENDINGS and ending not in STEP_ENDINGS:
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
@@ -161,7 +163,7 @@ def save_sheet(
             raise InputError(
                 f"{path} has no shape of the part: let the name end in .step, or leave part out."
             )
-        settings["shape"] = shape_in(part, listed.result.workpiece)
+        settings["shape"] = read_part_shape(part, listed.result.workpiece)
     if ending in MODEL_ENDINGS:
         write_model(path, listed.result, listed.row + 1, settings)
         return
@@ -209,14 +211,14 @@ def write_paper(
     path : of a file whose name ends in .pdf, .svg or .png.
     result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no
         file.
-    settings : as of :func:`workhold.drawing.sheet_facts.result_details`.
+    settings : as of :func:`workhold.drawing.sheet_facts.collect_sheet_details`.
 
     Raises
     ------
     InputError
         For another ending, values that cannot be, and when the file cannot be read or written.
     """
-    from workhold.drawing.sheet import result_sheet
+    from workhold.drawing.sheet import draw_setup_sheet
 
     ending = Path(path).suffix.lower()
     if ending not in PAPER_ENDINGS:
@@ -224,23 +226,27 @@ def write_paper(
         raise InputError(
             f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}."
         )
-    pages = result_sheet(result, rank, result_hash=hash_of(result_file), **settings)
-    write_bytes(path, pages_bytes(pages, ending, settings["day"]))
+    pages = draw_setup_sheet(result, rank, result_hash=hash_of(result_file), **settings)
+    write_bytes(path, make_pages_file(pages, ending, settings["day"]))
 
 
-def pages_bytes(pages: Sequence[str], ending: str, day: date) -> bytes:
+def make_pages_file(pages: Sequence[str], ending: str, day: date) -> bytes:
     """Make a file of pages in SVG: a PDF of a day, or one SVG or PNG with the pages below each other.
 
     Parameters
     ----------
     ending : one of :data:`PAPER_ENDINGS`.
     """
-    from workhold.drawing.pdf import svg_to_pdf
-    from workhold.drawing.render import stacked, svg_to_png
+    from workhold.drawing.pdf import convert_svg_to_pdf
+    from workhold.drawing.render import convert_svg_to_png, stack_pages
 
     if ending == ".pdf":
-        return svg_to_pdf(pages, day)
-    return stacked(pages).encode("utf-8") if ending == ".svg" else svg_to_png(stacked(pages), PNG_WIDTH)
+        return convert_svg_to_pdf(pages, day)
+    return (
+        stack_pages(pages).encode("utf-8")
+        if ending == ".svg"
+        else convert_svg_to_png(stack_pages(pages), PNG_WIDTH)
+    )
 
 
 def hash_of(result_file: str | Path | None) -> str:
@@ -269,16 +275,16 @@ def write_model(path: str | Path, result: Result, rank: int, settings: dict[str,
         For a part zero that cannot be, and when the file cannot be written.
     """
     ending = Path(path).suffix.lower()
-    write_bytes(path, model_bytes(result[rank - 1], result, ending, settings))
+    write_bytes(path, make_model_file(result[rank - 1], result, ending, settings))
 
 
-def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[str, Any]) -> bytes:
+def make_model_file(fixture: Fixture, result: Result, ending: str, settings: dict[str, Any]) -> bytes:
     """Make the file of a set-up for a CAM system, or of the list of its pins; see :func:`write_model`."""
     toolkit, unit = result.toolkit, settings["unit"]
     zero = part_zero(result.workpiece, settings["zero"], unit)
     at, clearance, chosen = settings["at"], settings["clearance"], settings.get("supports")
     if chosen is None:
-        fixture = move_fixture_by_holes(fixture, toolkit, placing_of(fixture, result, at))
+        fixture = move_fixture_by_holes(fixture, toolkit, find_placing(fixture, result, at))
     elif at is not None:
         chosen = chosen.standing_at(at)
     if fixture.hold is not None and ending in (".csv", ".dxf"):
@@ -287,19 +293,19 @@ def model_bytes(fixture: Fixture, result: Result, ending: str, settings: dict[st
             "setup sheet."
         )
     if ending == ".csv":
-        from workhold.files.result.fixture_text import pin_list
+        from workhold.files.result.fixture_text import write_pin_list
         from workhold.model.dowels import describe_fit
 
         fit, diameter = result.query.tolerance.fit, 2 * toolkit.plates[0].peg_radius
         dowel = settings["dowel"] or (None if fit is None else describe_fit(fit, diameter))
-        return pin_list(fixture, toolkit, unit, dowel, settings["peg_length"]).encode("utf-8")
+        return write_pin_list(fixture, toolkit, unit, dowel, settings["peg_length"]).encode("utf-8")
     if ending == ".dxf":
-        from workhold.files.dxf.writer import CLEARANCE, setup_dxf
+        from workhold.files.dxf.writer import CLEARANCE, make_setup_dxf
 
         keep_off = CLEARANCE if clearance is None else clearance
-        return setup_dxf(fixture, result.workpiece, toolkit, zero, keep_off)
+        return make_setup_dxf(fixture, result.workpiece, toolkit, zero, keep_off)
     lengths = {name: settings[name] for name in SIZES}
     shape = settings.get("shape")
     if chosen is not None:
         lengths["support_height"] = settings.get("support_height")
-    return Assembly.of(fixture, result, lengths, chosen, shape).content(ending, zero)
+    return Assembly.from_fixture(fixture, result, lengths, chosen, shape).make_file_content(ending, zero)

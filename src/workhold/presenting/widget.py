@@ -15,14 +15,14 @@ import traitlets
 
 from workhold.errors import InputError
 from workhold.model.result import Result
-from workhold.presenting.closing_shown import closing_shown
+from workhold.presenting.closing_shown import show_closing
 from workhold.presenting.live_picture import LivePicture, TriedForce
 from workhold.statics.loads import jaw_stiffness
 
 __all__ = ["FixtureWidget"]
 
 
-def text_of(name: str) -> str:
+def read_browser_file(name: str) -> str:
     """Return a file that goes to the browser."""
     return resources.files("workhold.presenting").joinpath("static", name).read_text(encoding="utf-8")
 
@@ -49,8 +49,8 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         For a result without a fixture, and values that cannot be.
     """
 
-    _esm = text_of("widget.js")
-    _css = text_of("widget.css")
+    _esm = read_browser_file("widget.js")
+    _css = read_browser_file("widget.css")
 
     rank = traitlets.Int(1).tag(sync=True)
     count = traitlets.Int(1).tag(sync=True)
@@ -90,27 +90,27 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
 
     @traitlets.validate("rank")  # type: ignore[untyped-decorator]
     def within(self, proposal: Any) -> int:
-        """Keeps the rank among those that there are."""
+        """Keep the rank among those that there are."""
         return min(max(int(proposal["value"]), 1), len(self.result))
 
     def show(self, _: Any = None) -> None:
         """Draw the fixture of the rank, with the force that is tried out."""
-        self.live = LivePicture.of(self.result, self.rank - 1, self.usual, self.supports)
+        self.live = LivePicture.from_result(self.result, self.rank - 1, self.usual, self.supports)
         with self.hold_sync():
             self.picture = {
-                "svg": self.live.svg(),
+                "svg": self.live.draw_svg(),
                 "title": self.live.title,
                 "figures": self.live.figures,
                 "mover": self.result.toolkit.moving.noun,
             }
-            self.closing = {**self.live.closing(), "number": self.asked_closing}
+            self.closing = {**self.live.describe_closing(), "number": self.asked_closing}
             self.push()
 
     def take(self, change: Any) -> None:
         """Take the arrow that was dragged in the browser for the force."""
         *arrow, number = change["new"]
         try:
-            pushed = self.live.push(arrow)
+            pushed = self.live.read_push(arrow)
         except InputError as error:
             self.answer = {**self.nothing, "words": str(error), "number": number}
             return
@@ -120,7 +120,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
 
     def push(self, _: Any = None, number: int = 0) -> None:
         try:
-            pushed = TriedForce.of(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
+            pushed = TriedForce.from_numbers(self.force) if self.force else TriedForce(0.0, 0.0, 0.0, 0.0)
             found = self.live.answer(pushed, self.jaw_force or None, self.jaw)
         except InputError as error:
             found = {**self.nothing, "words": str(error)}
@@ -132,7 +132,7 @@ class FixtureWidget(anywidget.AnyWidget):  # type: ignore[misc]
         return self.live.answer(TriedForce(0.0, 0.0, 0.0, 0.0), None, self.jaw)
 
     def close_jaws(self, _: Any = None) -> None:
-        self.closing = {**closing_shown(self.live), "number": self.asked_closing}
+        self.closing = {**show_closing(self.live), "number": self.asked_closing}
 
     def _repr_mimebundle_(self, **wanted: Any) -> Any:
         bundle = super()._repr_mimebundle_(**wanted)

@@ -17,25 +17,31 @@ from attrs import evolve
 
 from workhold.conventions import AGREEMENT
 from workhold.drawing.annotation import LabelPlacer
-from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, TOUCHED, Bench, face_of, force_arrow
+from workhold.drawing.bench import ARROW, PART_FILL, PEG_FILL, TOUCHED, Bench, compute_force_arrow, find_face
 from workhold.drawing.plan import (
     LONGEST_ARROW,
     avoid_drawing,
     draw_flag,
     draw_tag,
-    face_tag,
-    gripped_tag,
-    peg_label,
+    make_face_tag,
+    make_gripped_face_tag,
+    make_peg_label,
 )
-from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, number, text_width
-from workhold.fixels.carrier import column_letters
+from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View, measure_text, number
+from workhold.fixels.carrier import make_column_letters
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.clamps import ShownClamp
 from workhold.model.fixture import Fixture
 from workhold.model.shown import Dimension, Shown
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.moving_picture import draw_ground, draw_peg, drawn_back, moving_group, ways_of
+from workhold.presenting.moving_picture import (
+    add_moving_group,
+    draw_ground,
+    draw_peg,
+    find_clamping_directions,
+    measure_draw_back,
+)
 
 __all__ = ["draw_small", "draw_zoomed"]
 
@@ -51,7 +57,7 @@ SETTING, ABOVE, BESIDE, FARTHER, HEAD = 15.0, 34.0, 18.0, 32.0, 10.0
 DOT = 5.0
 
 
-def kept(scene: Scene, at: Point, axes: str = "xy", **attributes: str) -> Scene:
+def add_fixed_size_group(scene: Scene, at: Point, axes: str = "xy", **attributes: str) -> Scene:
     """Add a group that keeps its size about a page point when the picture is zoomed."""
     return scene.group("kept", None, data_at=f"{number(at[0])} {number(at[1])}", data_axes=axes, **attributes)
 
@@ -69,13 +75,13 @@ def draw_zoomed(
     str
         SVG text.
     """
-    bench = evolve(bench, shown=with_reached(bench.shown))
+    bench = evolve(bench, shown=hide_unreached_clamps(bench.shown))
     extent, page = bench.extent, Box(0.0, 0.0, *size)
     left, top, right, bottom = rim = NARROW_RIM if size[0] < NARROW else RIM
-    view = View.fitting(
+    view = View.fit_box(
         extent, Box(left, top, max(size[0] - right, left + 40), max(size[1] - bottom, top + 40))
     )
-    scene = Scene.page(size, title)
+    scene = Scene.make_page(size, title)
     (dx, dy), scale = placed, view.scale
     scene.element.set("data-model-to-page", View(scale, view.left + scale * dx, view.top - scale * dy).matrix)
     ends = (extent.x0 - dx, extent.y0 - dy, extent.x1 - dx, extent.y1 - dy)
@@ -84,13 +90,13 @@ def draw_zoomed(
     draw_ground(scene, bench, view)
     scene.group("over-part")
     draw_forces(scene, bench, view)
-    ways = ways_of(bench)
+    ways = find_clamping_directions(bench)
     for index, peg in enumerate(bench.fixture.pegs):
-        group = moving_group(scene, view, ways.get(peg.carrier), data_peg=str(index))
+        group = add_moving_group(scene, view, ways.get(peg.carrier), data_peg=str(index))
         if index in bench.placed:
             draw_peg(group, bench, view, index)
         else:
-            group.circle(view((peg.x, peg.y)), DOT, PEG_FILL, BLACK, 1.2, **{"class": "peg"})
+            group.add_circle(view((peg.x, peg.y)), DOT, PEG_FILL, BLACK, 1.2, **{"class": "peg"})
     taken = name_holes(scene, bench, view)
     for place, measured in enumerate(bench.shown.measured):
         taken.append(draw_travel(scene, bench, view, page, place, measured))
@@ -98,8 +104,9 @@ def draw_zoomed(
     return ET.tostring(scene.element, encoding="unicode")
 
 
-def with_reached(seen: Shown) -> Shown:
-    """What shows, of a clamp that does not reach its tip from its hole its line alone and no length to set.
+def hide_unreached_clamps(seen: Shown) -> Shown:
+    """Return what shows, of a clamp that does not reach its tip from its hole its line alone and no length to
+    set.
 
     Four contacts that are no fixture have such clamps.
     """
@@ -111,7 +118,7 @@ def with_reached(seen: Shown) -> Shown:
 
 
 def is_reached(clamp: ShownClamp) -> bool:
-    back, travel = drawn_back(clamp), clamp.carrier.travel
+    back, travel = measure_draw_back(clamp), clamp.carrier.travel
     if back is None or travel is None or travel.most is None:
         return True
     return -AGREEMENT <= back <= travel.most - travel.least + AGREEMENT
@@ -121,20 +128,20 @@ def draw_forces(scene: Scene, bench: Bench, view: View) -> None:
     """Draw the force of each contact, which keeps its size."""
     forces = scene.group("forces")
     for index in range(len(bench.fixture.pegs)):
-        tail, tip = force_arrow(bench, index, view, LONGEST_ARROW)
-        group = kept(forces, tail)
-        group.arrow(tail, tip, "#ffffff", 5.0, 14)
-        group.arrow(tail, tip, ARROW, 2.4, 12)
+        tail, tip = compute_force_arrow(bench, index, view, LONGEST_ARROW)
+        group = add_fixed_size_group(forces, tail)
+        group.add_arrow(tail, tip, "#ffffff", 5.0, 14)
+        group.add_arrow(tail, tip, ARROW, 2.4, 12)
 
 
 def name_holes(scene: Scene, bench: Bench, view: View) -> list[Box]:
-    """Names columns and rows beside their plates; returns the boxes of those in which something stands.
+    """Name columns and rows beside their plates; return the boxes of those in which something stands.
 
     ``data-step`` of the others is of how many one has room, as long as the picture is not zoomed.
     """
     boxes = []
     for shown in bench.shown.carriers:
-        group, plate = moving_group(scene, view, shown.clamping), view.box(shown.plate)
+        group, plate = add_moving_group(scene, view, shown.clamping), view.map_box(shown.plate)
         x, way, anchor = (plate.x1, 1, "start") if shown.names_at == "right" else (plate.x0, -1, "end")
         pitches = (view.scale * pitch for pitch in shown.carrier.pitch)
         column_step, row_step = (
@@ -145,7 +152,7 @@ def name_holes(scene: Scene, bench: Bench, view: View) -> list[Box]:
                 (view((at, 0.0))[0], plate.y0),
                 (0.0, -OFF_COLUMN),
                 column,
-                column_letters(column),
+                make_column_letters(column),
                 "middle",
                 column_step,
             )
@@ -154,40 +161,42 @@ def name_holes(scene: Scene, bench: Bench, view: View) -> list[Box]:
             ((x, view((0.0, at))[1]), (way * OFF_ROW, 0.0), row + 1, str(row + 1), anchor, row_step)
             for row, at in shown.named_rows
         ]
-        used = {*map(column_letters, shown.used_columns), *(str(row + 1) for row in shown.used_rows)}
+        used = {*map(make_column_letters, shown.used_columns), *(str(row + 1) for row in shown.used_rows)}
         for at, off, count, name, end, step in names:
             bold = name in used
             told = {} if bold else {"data_number": str(count), "data_step": number(step)}
             place = (at[0] + off[0], at[1] + off[1])
-            text = kept(group, at, **told).text(place, name, AXIS_NAME, end, bold, BLACK if bold else GREY)
+            text = add_fixed_size_group(group, at, **told).add_text(
+                place, name, AXIS_NAME, end, bold, BLACK if bold else GREY
+            )
             text.set("class", "axis-name used" if bold else "axis-name")
             if bold or count % max(1, ceil(step)) == 0:
-                wide = text_width(name, AXIS_NAME, bold)
+                wide = measure_text(name, AXIS_NAME, bold)
                 middle = place[0] + {"middle": 0.0, "start": wide / 2, "end": -wide / 2}[end]
                 boxes.append(Box.about((middle, place[1]), wide, AXIS_NAME))
     return boxes
 
 
 def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, measured: Dimension) -> Box:
-    """Dimensions a length to set above the drawing, or at its right; returns the box of its words."""
-    upright, frame, others = measured.is_upright, view.box(bench.extent), bench.shown.measured
+    """Return the dimensions a length to set above the drawing, or at its right; return the box of its words."""
+    upright, frame, others = measured.is_upright, view.map_box(bench.extent), bench.shown.measured
     nearer = sum(one.is_upright == upright for one in others[:place])
     line = frame.x1 + BESIDE + FARTHER * nearer if upright else frame.y0 - ABOVE - FARTHER * nearer
     start, end = (view(high) for _, high in measured.axes)
     start, end = ((line, start[1]), (line, end[1])) if upright else ((start[0], line), (end[0], line))
-    clamping = ways_of(bench).get(measured.setting.carrier.name)
+    clamping = find_clamping_directions(bench).get(measured.setting.carrier.name)
     # The distance of the line from the drawing keeps its size, its length does not.
     outer, along = ("x", "y") if upright else ("y", "x")
-    group = kept(scene.group("travel"), (frame.x1, frame.y0), outer)
-    stretched = moving_group(group, view, clamping).line([start, end], GREY, 1.0)
+    group = add_fixed_size_group(scene.group("travel"), (frame.x1, frame.y0), outer)
+    stretched = add_moving_group(group, view, clamping).add_line([start, end], GREY, 1.0)
     stretched.set("class", "stretches")
     for point, other, moves in ((start, end, None), (end, start, clamping)):
-        tip = kept(moving_group(group, view, moves), point, along)
+        tip = add_fixed_size_group(add_moving_group(group, view, moves), point, along)
         x, y = point
-        tip.line([(x - 6, y), (x + 14, y)] if upright else [(x, y - 6), (x, y + 14)], GREY, 1.0)
-        tip.arrow_head(point, atan2(point[1] - other[1], point[0] - other[0]), GREY, HEAD)
-    words = f"{measured.setting.sign} = {LengthUnit.mm().words(measured.setting.length)}"
-    wide = text_width(words, SETTING, bold=True) + 8
+        tip.add_line([(x - 6, y), (x + 14, y)] if upright else [(x, y - 6), (x, y + 14)], GREY, 1.0)
+        tip.add_arrow_head(point, atan2(point[1] - other[1], point[0] - other[0]), GREY, HEAD)
+    words = f"{measured.setting.sign} = {LengthUnit.in_mm().format_length(measured.setting.length)}"
+    wide = measure_text(words, SETTING, bold=True) + 8
     tight = upright or dist(start, end) < wide + 30
     (x, y), half = ((start[0] + end[0]) / 2, (start[1] + end[1]) / 2), wide / 2
     # Words stay in the picture, and off those that run upward beside them.
@@ -197,8 +206,8 @@ def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, m
     else:
         x, y = max(half, min(x, (frame.x1 + 12 if beside else page.x1) - half)), y - 15 * tight
     half_way = None if clamping is None else (clamping[0] / 2, clamping[1] / 2)
-    inner = kept(moving_group(group, view, half_way), (x, y), along)
-    text = inner.text((x, y), words, SETTING, "middle", True, halo=4.0, turned=90.0 if upright else 0.0)
+    inner = add_fixed_size_group(add_moving_group(group, view, half_way), (x, y), along)
+    text = inner.add_text((x, y), words, SETTING, "middle", True, halo=4.0, turned=90.0 if upright else 0.0)
     text.set("class", "dimension-text")
     text.set("data-sign", measured.setting.sign)
     text.set("data-length", repr(float(measured.setting.length)))
@@ -208,32 +217,32 @@ def draw_travel(scene: Scene, bench: Bench, view: View, page: Box, place: int, m
 def draw_labels(
     scene: Scene, bench: Bench, view: View, page: Box, taken: Sequence[Box], ways: dict[str, Point | None]
 ) -> None:
-    """Names pegs by their holes and touched faces by their numbers, where that hides least."""
+    """Name pegs by their holes and touched faces by their numbers, where that hides least."""
     placer = LabelPlacer(page.grown(-1.0))
     avoid_drawing(placer, bench, view)
     for box in taken:
         placer.avoid_box(box)
     pegs = bench.fixture.pegs
     numbers = list(dict.fromkeys(pegs[index].face for index in bench.touching))
-    labels = [peg_label(bench, index, view) for index in range(len(pegs))]
-    tags = [face_tag(bench, face, view) for face in numbers]
-    tags += [gripped_tag(bench, face, view) for face in bench.gripped]
+    labels = [make_peg_label(bench, index, view) for index in range(len(pegs))]
+    tags = [make_face_tag(bench, face, view) for face in numbers]
+    tags += [make_gripped_face_tag(bench, face, view) for face in bench.gripped]
     places = iter(placer.place([*labels, *tags]))
     # A clamp is named at its hole, which stays.
     bolted = {clamp.tip for clamp in bench.shown.clamps if clamp.hole is not None}
     for index, peg in enumerate(pegs):
         group, place = (
-            moving_group(scene, view, None if peg in bolted else ways.get(peg.carrier)),
+            add_moving_group(scene, view, None if peg in bolted else ways.get(peg.carrier)),
             next(places),
         )
-        radius = bench.radius(view, index) if index in bench.placed else DOT
-        flag = kept(group, place.leader(radius)[0])
+        radius = bench.get_page_radius(view, index) if index in bench.placed else DOT
+        flag = add_fixed_size_group(group, place.compute_leader(radius)[0])
         draw_flag(flag, place, radius, peg.hole)
         flag.element.set("class", "kept flag")
     faces = scene.group("faces")
     for face in (*numbers, *bench.gripped):
         place = next(places)
-        tag = kept(faces, place.anchor)
+        tag = add_fixed_size_group(faces, place.anchor)
         draw_tag(tag, place, str(face))
         tag.element.set("class", "kept face-tag")
 
@@ -247,25 +256,27 @@ def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
     """Draw the part with the faces that are touched and the pegs, to choose a fixture by; SVG text."""
     pose = fixture.pose
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
-    radii = [toolkit.carrier(peg.carrier).peg_radius for peg in fixture.pegs]
+    radii = [toolkit.find_carrier(peg.carrier).peg_radius for peg in fixture.pegs]
     boxes = [Box(*bounding_box(segment)) for loop in loops for segment in loop]
     boxes += [Box.about((peg.x, peg.y), 2 * r, 2 * r) for peg, r in zip(fixture.pegs, radii, strict=True)]
-    view = View.fitting(reduce(Box.union, boxes), Box(0.0, 0.0, *SMALL).grown(-SMALL_RIM))
-    scene = Scene.page(SMALL, "")
-    outline = "".join(f"{polyline(loop, view)}Z" for loop in loops)
-    scene.path(outline, fill=PART_FILL, fill_rule="evenodd")
+    view = View.fit_box(reduce(Box.union, boxes), Box(0.0, 0.0, *SMALL).grown(-SMALL_RIM))
+    scene = Scene.make_page(SMALL, "")
+    outline = "".join(f"{make_polyline_path(loop, view)}Z" for loop in loops)
+    scene.add_path(outline, fill=PART_FILL, fill_rule="evenodd")
     hold = fixture.hold
     gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
     for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
-        scene.path(polyline([pose.carry(face_of(workpiece, face))], view), TOUCHED, 3.6)
-    scene.path(outline, BLACK, 1.2)
+        scene.add_path(make_polyline_path([pose.carry(find_face(workpiece, face))], view), TOUCHED, 3.6)
+    scene.add_path(outline, BLACK, 1.2)
     for peg, radius in zip(fixture.pegs, radii, strict=True):
-        scene.circle(view((peg.x, peg.y)), max(radius * view.scale, SMALL_PEG), PEG_FILL)
+        scene.add_circle(view((peg.x, peg.y)), max(radius * view.scale, SMALL_PEG), PEG_FILL)
     return ET.tostring(scene.element, encoding="unicode")
 
 
-def polyline(segments: Sequence[Segment], view: View) -> str:
-    """SVG path data through the ends of lines and points of arcs; those too close to be told apart are left out."""
+def make_polyline_path(segments: Sequence[Segment], view: View) -> str:
+    """Return SVG path data through the ends of lines and points of arcs; those too close to be told apart are
+    left out.
+    """
     points: list[Point] = []
     for segment in segments:
         count = 1 if isinstance(segment, Line) else ceil(segment.length * view.scale / STEP)

@@ -331,7 +331,7 @@ def undecided(row: Array, problem: Problem, reason: str) -> Undecided:
     feature, column, line = read_peg_integers(row[None])
     faces = problem.faces[feature[0]].tolist()
     standing = np.abs(row[[record.STANDING]]).astype(np.int64)
-    kind = problem.toolkit.arrangements[problem.toolkit.arrangement_numbers(standing)[0]].title
+    kind = problem.toolkit.arrangements[problem.toolkit.find_arrangement_numbers(standing)[0]].title
     theta = float((np.degrees(-row[record.PSI]) + 90.0 * problem.frame.quarters) % 360.0)
     reach = float(np.degrees(row[record.REACH]))
     across, up = problem.frame.step_back(column[0], line[0])

@@ -20,16 +20,16 @@ from workhold.contact.problem import Frame, Problem
 from workhold.contact.swept import list_swept_clearances
 from workhold.contact.trimming import find_line_most_in_the_way
 from workhold.conventions import END_SLACK, GAP_SLACK, LEAST_CLAMPING, LEAST_CLOSURE
-from workhold.errors import InputError, listed
+from workhold.errors import InputError, join_words
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.symmetry import rotate_vectors
 from workhold.kernels.base.feature import HIGH_SLACK, LOW_SLACK
 from workhold.kernels.contact import record
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 from workhold.listing.asked import are_precise, touch_all
-from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
-from workhold.listing.placing import placeable, placed
-from workhold.listing.ranking import measured
+from workhold.listing.canonical_form import Candidates, list_each_once, make_candidates, make_canonical
+from workhold.listing.placing import are_placeable, place_candidates
+from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.quality import LOCATION_ERROR
 from workhold.model.query import Query
@@ -159,13 +159,13 @@ def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: boo
 
 def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
     """Every set of four simultaneous contacts of a problem, whatever the rules say of it."""
-    workers = thread_count(threads)
+    workers = choose_thread_count(threads)
     search = ToolkitSearch.of(problem, counting=True, most_listed=MOST_LISTED, threads=workers)
     records, _ = run_blocks(search.blocks(problem.query.types), workers, None, None)
     swapped = search.frame.swapped
     together = np.concatenate([np.zeros((0, record.RECORD_LENGTH)), *records])
     together = together[(together[:, record.STANDING] > 0.0) & np.isfinite(together).all(axis=1)]
-    c = listed_once(facing(canonical_form(candidates_of(together, problem), swapped), swapped))
+    c = list_each_once(facing(make_canonical(make_candidates(together, problem), swapped), swapped))
     rows = problem.rows[c.feature]
     normals = compute_outward_normals(rows, c.point)
     # All entries are -1 where the wrenches do not span the space.
@@ -278,7 +278,7 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
         query = evolve(asked_of, toolkit=toolkit.without(limits[kept:]), restrictions=restrictions)
         part = evolve(problem, query=query)
         keeps = partial(no_place, toolkit.noun, words)
-        out.append((words, lambda c: placeable(c.candidates, part), keeps))
+        out.append((words, lambda c: are_placeable(c.candidates, part), keeps))
 
     if problem.frame.moving.on is not None:
         rule("locators clear of the clamp", 0, Restrictions())
@@ -302,20 +302,20 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
     query, out = problem.query, list[Rule]()
 
     def table(c: ContactSets) -> FixtureTable:
-        return placed(c.candidates, problem)
+        return place_candidates(c.candidates, problem)
 
     def untouched(c: ContactSets) -> tuple[int, str]:
-        names = listed([str(face) for face in query.restrictions.touch])
+        names = join_words([str(face) for face in query.restrictions.touch])
         return int(
             c.margin.argmax()
         ), f"it would hold, but it does not touch all the faces that must be touched: {names}."
 
     def imprecise(c: ContactSets) -> tuple[int, str]:
-        errors = measured(table(c), problem).quality[:, LOCATION_ERROR]
+        errors = measure_table(table(c), problem).quality[:, LOCATION_ERROR]
         index, most = int(np.nanargmin(errors)), query.max_location_error or 0.0
         return index, (
-            f"it would hold with a location error of {unit.text(errors[index])}, but at most "
-            f"{unit.figure(most)} {unit.abbreviation} is asked for."
+            f"it would hold with a location error of {unit.format_length(errors[index])}, but at most "
+            f"{unit.format_short_length(most)} {unit.abbreviation} is asked for."
         )
 
     if query.restrictions.touch:
@@ -324,7 +324,7 @@ def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
         out.append(
             (
                 "largest location error",
-                lambda c: are_precise(measured(table(c), problem), query),
+                lambda c: are_precise(measure_table(table(c), problem), query),
                 imprecise,
             )
         )
@@ -340,8 +340,8 @@ def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int,
     """The contact whose pegs are farthest from the ends of their faces."""
     index = int(c.end_distance.argmax())
     return index, (
-        f"a peg touches {unit.text(c.end_distance[index])} from where its face ends for it; "
-        f"the contact margin is {unit.figure(margin)} {unit.abbreviation}."
+        f"a peg touches {unit.format_length(c.end_distance[index])} from where its face ends for it; "
+        f"the contact margin is {unit.format_short_length(margin)} {unit.abbreviation}."
     )
 
 
@@ -350,9 +350,9 @@ def find_miss_of_gap(frame: Frame, unit: Unit, c: ContactSets) -> tuple[int, str
     index = int(c.candidates.gap.argmax())
     gap = c.candidates.gap[index]
     beyond = BESIDE[frame.quarters if gap >= 0 else (frame.quarters + 2) % 4]
-    least = f"{unit.figure(frame.gap)} {unit.abbreviation}"
+    least = f"{unit.format_short_length(frame.gap)} {unit.abbreviation}"
     return index, (
-        f"the {frame.moving.name} pegs would stand {unit.text(abs(gap))} {beyond} "
+        f"the {frame.moving.name} pegs would stand {unit.format_length(abs(gap))} {beyond} "
         f"the {frame.standing.name} ones; the smallest gap is {least}."
     )
 
@@ -393,7 +393,7 @@ def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Pro
     index, words = miss
     toolkit = problem.toolkit.without(problem.toolkit.limits)
     part = evolve(problem, query=evolve(problem.query, toolkit=toolkit, restrictions=None))
-    table = placed(contacts.candidates.take(np.array([index])), part)
+    table = place_candidates(contacts.candidates.take(np.array([index])), part)
     return NearestMiss(make_fixture_of_row(table, toolkit, 0, problem.workpiece), words)
 
 

@@ -20,17 +20,17 @@ from workhold.errors import InputError, refuse_kind
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CONTACTS
-from workhold.limits import counting_number, thread_count
+from workhold.limits import check_count, choose_thread_count
 from workhold.listing.collector import BestFixtures, ResultCollector
-from workhold.listing.ranking import OrderKeys, figure_keys
+from workhold.listing.ranking import OrderKeys, make_figure_keys
 from workhold.listing.results import (
     MEASURED,
     Work,
-    best_result,
-    collected_result,
-    joined_ways,
-    listed_result,
-    stage,
+    join_ways,
+    list_result,
+    make_best_result,
+    make_collected_result,
+    make_stage_progress,
 )
 from workhold.model.first_choice import list_ranking_figures
 from workhold.model.fixture import Fixture
@@ -198,7 +198,7 @@ def answer(
     (3, True)
     """
     refuse_kind(query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
-    workers = thread_count(counting_number("threads", threads))
+    workers = choose_thread_count(check_count("threads", threads))
     if query.toolkit.flat_jaws is not None:
         # What holds by friction loads its own solver, which pegs do not need.
         from workhold.search.jaw_search import find_fixtures_between_jaws
@@ -226,10 +226,10 @@ def answer(
         return answer_one_direction(query, workers, progress, cancel, preview, sink)
     results = []
     for number, way in enumerate(ways):
-        share = stage(progress, number / len(ways), (number + 1) / len(ways))
+        share = make_stage_progress(progress, number / len(ways), (number + 1) / len(ways))
         part = evolve(query, toolkit=way)
         results.append(answer_one_direction(part, workers, share, cancel, preview, is_part=True))
-    return send_to_sink(joined_ways(results, query), sink)
+    return send_to_sink(join_ways(results, query), sink)
 
 
 def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
@@ -269,7 +269,10 @@ def find_best_fixtures(
     most, number = choose_first_limit(spots, query), 0
     search_up_to = find_paired_fixtures_within_limits if is_paired else find_fixtures_within_limits
     while most < inf:
-        share, number = stage(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)), number + 1
+        share, number = (
+            make_stage_progress(progress, 1.0 - 0.5**number, 1.0 - 0.5 ** (number + 1)),
+            number + 1,
+        )
         limits = [one.limit(most) for one in spots]
         keys, finish = search_up_to(limits, problems, query, threads, share, cancel, preview)
         if is_enough(most, keys, query) or (cancel is not None and cancel.is_set()):
@@ -295,18 +298,18 @@ def find_fixtures_within_limits(
     kepts, works = list[BestFixtures](), list[Work]()
     for place, (problem, limit) in enumerate(zip(problems, limits, strict=True)):
         kept = BestFixtures(problem, cancel, is_limited=True)
-        part = stage(progress, place / len(problems), (place + 1) / len(problems))
+        part = make_stage_progress(progress, place / len(problems), (place + 1) / len(problems))
         look = None if preview is None else Previews(problem, preview).add
         works.append(limited_work(limit, problem, kept, threads, part, cancel, look))
         kepts.append(kept)
-    keys = reduce(OrderKeys.followed_by, [kept.found_keys for kept in kepts])
+    keys = reduce(OrderKeys.concatenate, [kept.found_keys for kept in kepts])
 
     def finish() -> Result:
         results = [
-            best_result(kept, work, len(kepts) > 1, is_limited=True)
+            make_best_result(kept, work, len(kepts) > 1, is_limited=True)
             for kept, work in zip(kepts, works, strict=True)
         ]
-        return joined_ways(results, query) if len(results) > 1 else results[0]
+        return join_ways(results, query) if len(results) > 1 else results[0]
 
     return keys, finish
 
@@ -345,28 +348,30 @@ def answer_one_direction(
     search = ToolkitSearch.of(problem, threads=threads, cancel=cancel, precision=precision)
     kept = None if query.best is None else BestFixtures(problem, cancel)
     look = None if preview is None else Previews(problem, preview).add
-    before, rest = stage(progress, 0.0, SEARCH), stage(progress, SEARCH, 1.0)
+    before, rest = make_stage_progress(progress, 0.0, SEARCH), make_stage_progress(progress, SEARCH, 1.0)
     if kept is not None:
         work = best_first(search, kept, threads, before, cancel, look)
-        return send_to_sink(add_reason(best_result(kept, work, is_part), search, threads, cancel), sink)
+        return send_to_sink(add_reason(make_best_result(kept, work, is_part), search, threads, cancel), sink)
     blocks = search.blocks(query.types)
     if sink is not None:
         with ThreadPoolExecutor(max_workers=threads) as pool:
             collector = ResultCollector(problem, pool, 2 * threads, cancel, sink.folder)
-            with collector.given_up_on_errors():
+            with collector.give_up_on_errors():
                 _, done = run_blocks(blocks, threads, before, cancel, collector.take, look, search.stop, pool)
-                result = collected_result(
-                    collector, work_of(search, blocks, done), stage(rest, 0.0, MEASURED)
+                result = make_collected_result(
+                    collector, work_of(search, blocks, done), make_stage_progress(rest, 0.0, MEASURED)
                 )
                 result = add_reason(result, search, threads, cancel)
                 listed = collector.listed
                 if listed < sum(result.found.values()):
                     result = result.cut_short(listed)
-                sink.receive(result, listed, collector.tables(stage(rest, MEASURED, 1.0)))
+                sink.receive(
+                    result, listed, collector.iterate_tables(make_stage_progress(rest, MEASURED, 1.0))
+                )
         return result
     records, done = run_blocks(blocks, threads, before, cancel, look=look, stop=search.stop)
     work = work_of(search, blocks, done)
-    result = listed_result(
+    result = list_result(
         problem, records, work, progress=rest, cancel=cancel, threads=threads, is_part=is_part
     )
     return send_to_sink(add_reason(result, search, threads, cancel), sink)
@@ -473,7 +478,9 @@ def explore(
         try:
             if isinstance(query, InputError):
                 raise query
-            count = estimate_fixtures(query, thread_count(None), cancel) if query.best is None else None
+            count = (
+                estimate_fixtures(query, choose_thread_count(None), cancel) if query.best is None else None
+            )
             # Where there are many, the first is enough.
             result = answer(query if count is None else evolve(query, best=1), cancel=cancel)
         except InputError as error:
@@ -522,7 +529,7 @@ def first_choice(
     keys = [np.array([not item.fit for item in able]), np.array([not is_sold(item.name) for item in able])]
     held = np.array([item.held for item in able])
     known = [name for name in list_ranking_figures(ranking) if find_ranked_number(name) is not None]
-    figures, warned = figure_keys(quality, known) if known else [], FIGURES[WARNINGS].key
+    figures, warned = make_figure_keys(quality, known) if known else [], FIGURES[WARNINGS].key
     # What flat jaws hold has figures of its own, of which the area that they touch counts.
     figures += [np.array([-item.figures.get("contact_area", 0.0) for item in able])]
     first = 1 if ranking[:1] == (warned,) else len(figures)

@@ -39,7 +39,7 @@ from workhold.kernels.contact.location_bounds import (
     least_middle_error,
 )
 from workhold.kernels.curves.near_spots import NEARLY_WHOLE
-from workhold.listing.ranking import A_STEP, OrderKeys, best_possible, keys_of
+from workhold.listing.ranking import A_STEP, OrderKeys, make_best_possible_figures, make_order_keys
 from workhold.model.first_choice import FACTORS
 from workhold.model.quality import LOCATION_ERROR, PENALTY, SMALLEST_FACE, TILT
 from workhold.model.query import Query
@@ -310,7 +310,7 @@ def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
     """
     times = [factor(key) for key in (None, "quarter_turn", "other_angle")]
     rows = [(place, times[place] * bore) for place in range(3) for bore in (1.0, IN_BORE)]
-    quality = best_possible(len(rows), query)
+    quality = make_best_possible_figures(len(rows), query)
     quality[:, LOCATION_ERROR] = [most / total for _, total in rows]
     # Where the drawing lies aslant, other angles may be square.
     is_square = main_direction(query.workpiece) == 0.0
@@ -318,7 +318,7 @@ def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
     quality[:, SMALLEST_FACE] = np.nanmax(measure_faces(query.workpiece))
     judging = Judging.of(1.0, query.toolkit, query.tolerance)
     quality[:, PENALTY] = evolve(judging, small_face=0.0).penalty(quality)
-    return keys_of(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
+    return make_order_keys(quality, query, np.full(len(rows), most), np.array([place for place, _ in rows]))
 
 
 def choose_first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
@@ -336,12 +336,12 @@ def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
     if most == inf:
         return True
     bound = bound_keys_beyond_limit(most, query)
-    return bool(bound.beaten(kept, query.best or 0, bound.lowest).all())
+    return bool(bound.are_beaten(kept, query.best or 0, bound.lowest).all())
 
 
 def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -> float:
     """The limit in mm after one that was not enough, the so-manieth, given the keys of what it found."""
-    known = kept.last_fine_error(query.best or 0)
+    known = kept.find_last_fine_error(query.best or 0)
     if known is None:
         _, times, limits = choose_limit_growth(query)
         return inf if number >= limits else times * most

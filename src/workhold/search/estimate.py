@@ -23,8 +23,8 @@ from workhold.conventions import ANGLE_HAIR, SAME_POSE
 from workhold.fixels.contacts import WALL_END
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.tables import NearSpots
-from workhold.listing.canonical_form import candidates_of
-from workhold.listing.collector import blocks_of, finish
+from workhold.listing.canonical_form import make_candidates
+from workhold.listing.collector import finish, split_into_blocks
 from workhold.listing.seat_order import seat_numbers
 from workhold.listing.seats import ClampedSeats
 from workhold.model.clamps import LOCATORS
@@ -175,14 +175,14 @@ class Stretches:
 
     def chosen(self, records: list[Array], problem: Problem) -> Array:
         """The contacts (M, 19) of blocks whose locators touch three stretches that are chosen."""
-        blocks = blocks_of(records)
+        blocks = split_into_blocks(records)
         if self.every > 1:
             blocks = (block[self.are_chosen(block, problem)] for block in blocks)
         return np.concatenate(list(blocks))
 
     def are_chosen(self, records: Array, problem: Problem) -> BoolArray:
         """Whether the locators of contacts (N, 19) touch three stretches that are chosen."""
-        c = candidates_of(records, problem)
+        c = make_candidates(records, problem)
         feature, rows = c.feature[:, :LOCATORS], problem.rows[c.feature[:, :LOCATORS]]
         axis, ray = rows[..., AXIS_X : AXIS_Y + 1], c.point[:, :LOCATORS] - rows[..., X : Y + 1]
         along = (axis * ray).sum(axis=2)

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Problem
 from workhold.conventions import LEAST_CLOSURE
-from workhold.errors import InputError, listed
-from workhold.fixels.carrier import Carrier, Holes, column_letters, holes_named, letter_of
+from workhold.errors import InputError, join_words
+from workhold.fixels.carrier import Carrier, Holes, find_carrier_letter, make_column_letters, parse_hole_name
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Toolkit
-from workhold.limits import counting_number, thread_count
-from workhold.listing.placing import placeable, placed
+from workhold.limits import check_count, choose_thread_count
+from workhold.listing.placing import are_placeable, place_candidates
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.query import Query
@@ -117,7 +117,7 @@ def evaluate(
         return Evaluation(given, Result(query, FixtureTable.empty(query.toolkit), *no_counts(query)), far)
     result = answer(query, threads=threads)
     result = result.choose(setup.matches(result.table, query.toolkit))
-    workers = thread_count(counting_number("threads", threads))
+    workers = choose_thread_count(check_count("threads", threads))
     return Evaluation(given, result, "" if len(result) else setup.reason(query, workers))
 
 
@@ -159,7 +159,9 @@ class OwnSetUp:
         needed = toolkit.peg_count - moving - walls
         if len(set(pegs)) != needed or len(pegs) != needed or len(clamps) not in (0, moving):
             also = f", and of {moving} clamp{'s' * (moving > 1)} if wanted" if moving else ""
-            raise InputError(f"{listed(list(names) or ['nothing'])}: give the holes of {needed} pegs{also}.")
+            raise InputError(
+                f"{join_words(list(names) or ['nothing'])}: give the holes of {needed} pegs{also}."
+            )
         return cls(toolkit, pegs, clamps)
 
     @property
@@ -230,7 +232,7 @@ class OwnSetUp:
     def too_far(self, diameter: float) -> str:
         """The sentence on a peg that is too far from all others of its lattice; empty where none is."""
         for hole in self.pegs:
-            carrier = self.toolkit.carrier(hole.carrier)
+            carrier = self.toolkit.find_carrier(hole.carrier)
             at = carrier.place(hole.column, hole.row or 0)
             others = [
                 (dist(at, carrier.place(one.column, one.row or 0)), name_of(one, carrier))
@@ -239,7 +241,7 @@ class OwnSetUp:
             ]
             away, nearest = min(others, default=(0.0, ""))
             if away > diameter + 2 * carrier.peg_radius:
-                pegs = listed(sorted((name_of(hole, carrier), nearest)))
+                pegs = join_words(sorted((name_of(hole, carrier), nearest)))
                 return (
                     f"{pegs} are {away:.4g} mm apart, and the part is {diameter:.4g} mm across: no pose touches "
                     "both."
@@ -248,15 +250,15 @@ class OwnSetUp:
 
     def reason(self, query: Query, threads: int) -> str:
         """Why no fixture stands in these holes, in a sentence."""
-        named = listed([name_of(hole, self.toolkit.carrier(hole.carrier)) for hole in self.pegs])
+        named = join_words([name_of(hole, self.toolkit.find_carrier(hole.carrier)) for hole in self.pegs])
         if self.is_beside_wall or query.toolkit.travels > 1:
             return f"No pose of {query.workpiece.name} touches {named} and all else, and is held by them."
         poses, pulls = 0, 4
         for way in query.toolkit.ways:
             problem = Problem.of(evolve(query, toolkit=way))
             contacts = find_all_contacts(problem, threads)
-            contacts = contacts.take(placeable(contacts.candidates, problem))
-            contacts = contacts.take(self.matches(placed(contacts.candidates, problem), way))
+            contacts = contacts.take(are_placeable(contacts.candidates, problem))
+            contacts = contacts.take(self.matches(place_candidates(contacts.candidates, problem), way))
             poses += len(contacts.margin)
             loose = (contacts.null < LEAST_CLOSURE).sum(axis=1)
             pulls = min(pulls, int(loose.min(initial=4)))
@@ -280,12 +282,12 @@ def find_named_hole(name: str, lattices: Iterable[Carrier]) -> Holes:
     """The hole of a name; refuses one that there is not, and a column."""
     carriers = {carrier.name: carrier for carrier in lattices}
     first = next(iter(carriers.values()))
-    if letter_of(first.name):
-        hole = holes_named(name, carriers, first.noun)
+    if find_carrier_letter(first.name):
+        hole = parse_hole_name(name, carriers, first.noun)
     else:
         # The holes of the only lattice are named without a letter for it.
         try:
-            hole = evolve(holes_named(f"L-{name}", ("left",), first.noun), carrier=first.name)
+            hole = evolve(parse_hole_name(f"L-{name}", ("left",), first.noun), carrier=first.name)
         except InputError as error:
             raise InputError(f"{name!r} names no hole: give column letter and row, such as B3.") from error
     carrier = carriers[hole.carrier]
@@ -294,6 +296,6 @@ def find_named_hole(name: str, lattices: Iterable[Carrier]) -> Holes:
             f"{name} is a column: give a hole of it, such as {carrier.place_name(hole.column, 2)}."
         )
     if hole.column >= (carrier.columns or hole.column + 1) or hole.row >= (carrier.rows or hole.row + 1):
-        last = "" if carrier.columns is None else f" up to {column_letters(carrier.columns - 1)}"
+        last = "" if carrier.columns is None else f" up to {make_column_letters(carrier.columns - 1)}"
         raise InputError(f"there is no hole {name}: the {carrier.noun} has columns{last}.")
     return hole

@@ -16,11 +16,11 @@ import numpy as np
 from attrs import evolve
 
 from workhold.contact.problem import Problem
-from workhold.errors import InputError, listed
+from workhold.errors import InputError, join_words
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
 from workhold.listing.asked import are_as_asked
-from workhold.listing.ranking import measured
+from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
 from workhold.model.notes import NoFixture, Note, Remark
 from workhold.model.quality import WARNINGS
@@ -149,7 +149,7 @@ def placed(query: Query) -> int:
     tables = (search.placed([part], edge) for edge in search.edges for part in search.fixtures(edge))
     if not query.is_sifted:
         return sum(map(len, tables))
-    return sum(int(are_as_asked(measured(table, search.problem), query).sum()) for table in tables)
+    return sum(int(are_as_asked(measure_table(table, search.problem), query).sum()) for table in tables)
 
 
 def miss_of(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NearestMiss:
@@ -262,7 +262,7 @@ def together(query: Query, lifts: Sequence[Lift], threads: int | None) -> Iterat
         if (found := found_without(fewer)) is not None:
             needed, result = fewer, found
     if result is not None:
-        words = listed([lift.words for lift in needed])
+        words = join_words([lift.words for lift in needed])
         rules = tuple(rule for lift in needed for rule in lift.rules)
         yield Help(words, sum(result.found.values()), result.complete, None, rules)
 
@@ -349,7 +349,7 @@ def changes(query: Query, unit: Unit) -> Iterator[Lift]:
     for limit in toolkit.limits:
         held, fields = partial(change_toolkit, change=limit.lifted), limit.lifted.fields
         yield lift(limit.lifted.words, held, (limit.rule,), fields)
-    for change in toolkit.further_changes(unit):
+    for change in toolkit.list_further_changes(unit):
         yield lift(change.words, partial(change_toolkit, change=change), (), change.fields, is_whole=False)
 
 

@@ -337,7 +337,7 @@ class JawSearch:
         """How the part can lie, for each height of parallels."""
         out, known = {}, dict[int, list[Lying]]()
         for parallels in self.jaws.parallels:
-            outline, first = self.query.workpiece.outline_of(self.jaws.role(parallels))
+            outline, first = self.query.workpiece.outline_of(self.jaws.name_outline_role(parallels))
             if first not in known:
                 one = JawOutline(outline, first, self.query.part_height)
                 known[first] = [one.lying(place) for place in range(len(one.angles))]
@@ -357,7 +357,7 @@ class JawSearch:
 
     def examine(self, lying: Lying, parallels: float, stop: str | None) -> Examined:
         query, jaws = self.query, self.jaws
-        top = jaws.top(parallels)
+        top = jaws.compute_top(parallels)
         nothing = Examined(lying.theta, (0.0, 0.0), None, "grip")
         if not lie_in_angle_ranges(degrees(lying.theta), query.restrictions.angles):
             return evolve(nothing, rule="angles")
@@ -416,7 +416,7 @@ class JawSearch:
 
     def line_near_jaws(self, program: Program, one: Examined, hold: JawHold) -> int | None:
         """The line of a program whose tool comes too near a jaw, a box from its face outward; None where none does."""
-        swept = find_swept_below(program, self.jaws.top(hold.parallels))
+        swept = find_swept_below(program, self.jaws.compute_top(hold.parallels))
         if not len(swept):
             return None
         depth = JAW_DEPTH if self.jaws.thickness is None else self.jaws.thickness
@@ -444,7 +444,7 @@ class JawSearch:
             way = -float(side)
             y = [at + one.position[1] for _, at, _ in lying.reaches[side, 0][1]]
             x = side * lying.reach(side, 0) + one.position[0]
-            high = min(self.jaws.top(hold.parallels), self.height)
+            high = min(self.jaws.compute_top(hold.parallels), self.height)
             points = [(x, each, z) for each in sorted({min(y), max(y)}) for z in (0.0, high)]
         return Grip.of(
             hold.fixed,

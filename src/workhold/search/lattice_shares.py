@@ -26,16 +26,16 @@ from workhold.fixels.fields import PITCH
 from workhold.kernels.base.tables import NearSpots
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import refuse_much_work
-from workhold.listing.bounds import preferred_angles, tilted_keys
-from workhold.listing.canonical_form import Candidates, candidates_of, canonical_form, listed_once
-from workhold.listing.clamp_contacts import contacts_of_candidates
-from workhold.listing.collector import blocks_of
+from workhold.listing.bounds import bound_keys_when_tilted, list_preferred_angles
+from workhold.listing.canonical_form import Candidates, list_each_once, make_candidates, make_canonical
+from workhold.listing.clamp_contacts import make_contacts_of_candidates
+from workhold.listing.collector import split_into_blocks
 from workhold.listing.contact_groups import PackedContacts
-from workhold.listing.placing import at_angle
+from workhold.listing.placing import are_at_angle
 from workhold.listing.ranking import MOST_ERROR, OrderKeys
-from workhold.listing.results import Work, stage, summed
-from workhold.listing.seat_order import ordered_groups
-from workhold.listing.seats import ClampedSeats, Seats, seats_of
+from workhold.listing.results import Work, make_stage_progress, sum_counts
+from workhold.listing.seat_order import make_ordered_groups
+from workhold.listing.seats import ClampedSeats, Seats, make_seats
 from workhold.model.notes import NoPair
 from workhold.model.query import Query
 from workhold.proof.deciding import Account, Course, decided
@@ -102,13 +102,13 @@ class LatticeShares:
         With a limit those of seats with no larger location error, the square ones first.
         """
         if limit is not None:
-            first = preferred_angles(query)
+            first = list_preferred_angles(query)
             square = searches_of(query, threads, cancel, limit, limit.square, first)
             aslant = searches_of(query, threads, cancel, limit, limit.aslant)
             blocks = [list_search_blocks(search) for search in aslant]
             ranges = order_square_ranges_first(ranges_of(blocks), first)
             seats = ClampedSeats(query, square[0].problem, is_limited=True)
-            bound = tilted_keys(query, square[0].problem)
+            bound = bound_keys_when_tilted(query, square[0].problem)
             seats.ranked.has_dropped = True
             with ThreadPoolExecutor(max_workers=threads) as pool:
                 yield cls(aslant, seats, blocks, ranges, bound, pool, threads, cancel, square)
@@ -125,7 +125,7 @@ class LatticeShares:
         problem = searches[0].problem
         bound, ranges = bound_tilted_keys(query, problem, count_ways(blocks)), ranges_of(blocks)
         if bound is not None:
-            ranges = order_square_ranges_first(ranges, preferred_angles(query))
+            ranges = order_square_ranges_first(ranges, list_preferred_angles(query))
         seats = ClampedSeats(query, problem)
         with ThreadPoolExecutor(max_workers=threads) as pool:
             yield cls(searches, seats, blocks, ranges, bound, pool, threads, cancel)
@@ -153,7 +153,7 @@ class LatticeShares:
             return iter(()), True
         found, is_whole = list[PackedContacts](), True
         for place, search in enumerate(self.square if self.square and share == 0 else self.searches):
-            part = stage(progress, place / len(self.searches), (place + 1) / len(self.searches))
+            part = make_stage_progress(progress, place / len(self.searches), (place + 1) / len(self.searches))
             blocks = self.blocks_of(share, search, self.whole_turn[place])
             records, done = run_blocks(
                 blocks,
@@ -165,7 +165,7 @@ class LatticeShares:
             )
             self.cells += sum(block.cells for block in done)
             is_whole = is_whole and len(done) == len(blocks)
-            found.append(PackedContacts.of(records))
+            found.append(PackedContacts.from_blocks(records))
         return self.seats(found, share), is_whole
 
     def blocks_of(self, share: int, search: ToolkitSearch, whole_turn: list[Block]) -> list[Block]:
@@ -173,12 +173,12 @@ class LatticeShares:
         if self.shares == 1:
             return whole_turn
         if self.square:
-            first = preferred_angles(self.collector.query)
+            first = list_preferred_angles(self.collector.query)
             if share == 0:
                 return search.blocks(search.problem.toolkit.types, BLOCKS_PER_HALF_TURN, first=first)
         blocks_in = partial(search.blocks, search.problem.toolkit.types, BLOCKS_PER_HALF_TURN)
         if share == 0 and self.bound is not None:
-            return blocks_in(first=preferred_angles(self.collector.query))
+            return blocks_in(first=list_preferred_angles(self.collector.query))
         within = [(degrees(low - OVERLAP), degrees(high + OVERLAP)) for low, high in self.ranges[share]]
         return blocks_in(within=within)
 
@@ -191,9 +191,9 @@ class LatticeShares:
         if query.best is None or (self.shares == 1 and total <= COUNTED_WHOLE):
             yield self.seats_among([part.take(slice(None)) for part in records], within)
             return
-        groups = ordered_groups(records, [search.problem for search in self.searches], query)
+        groups = make_ordered_groups(records, [search.problem for search in self.searches], query)
         edges = np.cumsum([0, *map(len, records)])
-        for chosen in groups.batches(self.collector.ranked, self.floor(share)):
+        for chosen in groups.iterate_batches(self.collector.ranked, self.floor(share)):
             places = np.searchsorted(chosen, edges).tolist()
             some = [
                 part.take(chosen[first:end] - start)
@@ -211,25 +211,25 @@ class LatticeShares:
         """All seats of contacts (N, 19) of each direction."""
         problems = [search.problem for search in self.searches]
         parts = [
-            contacts_of_candidates(self.proven(some, problem), problem)
+            make_contacts_of_candidates(self.proven(some, problem), problem)
             for some, problem in zip(records, problems, strict=True)
         ]
-        return seats_of(parts, problems[0], within, self.collector.is_limited)
+        return make_seats(parts, problems[0], within, self.collector.is_limited)
 
     def proven(self, records: Array, problem: Problem) -> Candidates:
         """Contacts of three locators and a clamp that are proven, each once."""
-        course, blocks = Course(len(records), cancel=self.cancel), list(blocks_of([records]))
+        course, blocks = Course(len(records), cancel=self.cancel), list(split_into_blocks([records]))
 
         def work(block: Array) -> tuple[Candidates, Account]:
             proven, account = decided(block, problem, course)
-            candidates = canonical_form(candidates_of(proven, problem), 0)
+            candidates = make_canonical(make_candidates(proven, problem), 0)
             return candidates.take(
-                at_angle(candidates.theta, problem.restrictions.angles, problem.frame)
+                are_at_angle(candidates.theta, problem.restrictions.angles, problem.frame)
             ), account
 
         parts, accounts = zip(*self.pool.map(work, blocks), strict=True)
         self.accounts += accounts
-        return listed_once(Candidates.joined(parts))
+        return list_each_once(Candidates.concatenate(parts))
 
     def account(self) -> Account:
         """What became of all contacts so far."""
@@ -239,7 +239,7 @@ class LatticeShares:
         """How the search went."""
         searches = [*self.square, *self.searches]
         examined = int(sum(search.totals[CANDIDATES] for search in searches))
-        statistics = summed(search.statistics for search in searches)
+        statistics = sum_counts(search.statistics for search in searches)
         return Work(complete and self.account().left == 0, statistics, self.cells, examined)
 
     def why_none(self) -> NoPair:

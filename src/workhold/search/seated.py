@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 
 from workhold.contact.problem import Progress
 from workhold.errors import InputError
-from workhold.listing.ranking import billionths, keys_of, usual_errors
-from workhold.listing.results import stage
+from workhold.listing.ranking import convert_to_billionths, find_usual_errors, make_order_keys
+from workhold.listing.results import make_stage_progress
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import BestOnly, Cut, Note, PushedByHand, Seated
 from workhold.model.quality import FIGURES, SEATING_FIGURES, WARNINGS, fill_figure_rows
@@ -106,7 +106,7 @@ def answer_with_seating(
     if not by_hand:
         # A sink takes fixtures while the search still reports its end.
         whole = progress if sink is None or progress is None else rising(progress)
-        progress, rest = stage(whole, 0.0, SEARCHED), stage(whole, SEARCHED, 1.0)
+        progress, rest = make_stage_progress(whole, 0.0, SEARCHED), make_stage_progress(whole, SEARCHED, 1.0)
     work = SeatingWork(query, threads, rest, cancel)
     taker = {} if sink is None else {"sink": SeatedSink(sink, work)}
     result = search(query.without_seating, progress=progress, cancel=cancel, **taker)
@@ -211,11 +211,13 @@ def order_of(
     whole = fill_figure_rows(table.quality)
     quality = np.hstack([whole[:, : len(FIGURES)], seating, whole[:, len(FIGURES) :]])
     quality[:, WARNINGS] += [one.warning_count for one in seatings]
-    effective = usual_errors(query)
+    effective = find_usual_errors(query)
     error = None if effective is None else effective.errors(table)
-    keys = keys_of(quality, query, error, classify_angles(table.theta))
+    keys = make_order_keys(quality, query, error, classify_angles(table.theta))
     return keys.order(
-        None if least_effective_error is None else int(billionths(np.array([least_effective_error]))[0])
+        None
+        if least_effective_error is None
+        else int(convert_to_billionths(np.array([least_effective_error]))[0])
     )
 
 

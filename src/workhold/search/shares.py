@@ -27,11 +27,11 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CANDIDATES
-from workhold.listing.bounds import preferred_angles, tilted_keys
-from workhold.listing.canonical_form import Candidates, listed_once
+from workhold.listing.bounds import bound_keys_when_tilted, list_preferred_angles
+from workhold.listing.canonical_form import Candidates, list_each_once
 from workhold.listing.collector import BestFixtures, finish
 from workhold.listing.ranking import OrderKeys
-from workhold.listing.results import Work, result_of, stage, summed
+from workhold.listing.results import Work, make_result, make_stage_progress, sum_counts
 from workhold.model.notes import Note
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -102,11 +102,13 @@ class Previews:
             return
         fresh, account = finish([self.newest], self.problem, self.hurry)
         self.newest = None
-        together = fresh if self.shown is None else listed_once(Candidates.joined([self.shown, fresh]))
+        together = (
+            fresh if self.shown is None else list_each_once(Candidates.concatenate([self.shown, fresh]))
+        )
         if len(fresh.standing):
             self.shown = together
             work = Work(complete=False, statistics={})
-            self.show(result_of(self.problem, together, account, work))
+            self.show(make_result(self.problem, together, account, work))
         end = perf_counter()
         self.spent += end - start
         self.next_time = max(end + PAUSE, self.began + SHARE * self.spent)
@@ -125,7 +127,7 @@ class Collector(Protocol):
     def add(self, found: Any) -> None:
         """Takes the findings of a share."""
 
-    def result(self, account: Account, work: Work) -> Result:
+    def make_result(self, account: Account, work: Work) -> Result:
         """The result of all."""
 
 
@@ -163,15 +165,15 @@ def answer_by_shares(
         if cancel is not None and cancel.is_set():
             break
         end = (number + 1) / locating.shares
-        found, is_whole = locating.look(number, stage(progress, number / locating.shares, end))
+        found, is_whole = locating.look(number, make_stage_progress(progress, number / locating.shares, end))
         for part in found:
             kept.add(part)
         done += is_whole
         if progress is not None and is_whole:
             progress(end, len(kept))
         if preview is not None and number < MOST_PREVIEWS:
-            preview(kept.result(Account(0, 0, 0, 0, ()), Work(False, {})))
-    result = kept.result(locating.account(), locating.work(done, done == locating.shares))
+            preview(kept.make_result(Account(0, 0, 0, 0, ()), Work(False, {})))
+    result = kept.make_result(locating.account(), locating.work(done, done == locating.shares))
     if not result.complete or any(result.found.values()) or result.reasons:
         return result
     return evolve(result, notes=(locating.why_none(),))
@@ -212,7 +214,7 @@ def best_first(
     blocks_in = partial(ToolkitSearch.blocks, types=query.types, least=4 * LEAST_BLOCKS)
     total = estimate_cost(blocks_in(search))
     bound = bound_tilted_keys(query, problem, total)
-    first = () if bound is None else preferred_angles(query)
+    first = () if bound is None else list_preferred_angles(query)
     if total > SCOUTED_FROM and len(search.precision.probes):
         scout, known = evolve(search, every=SCOUTED), BestFixtures(problem, cancel)
         run_blocks(blocks_in(scout, first=first), threads, None, cancel, known.add, stop=scout.stop)
@@ -226,7 +228,9 @@ def best_first(
         if begun and bound is not None and kept.rules_out(bound):
             break
         before, begun = estimate_cost(begun) / total if begun else 0.0, begun + part
-        share = stage(progress, before, 1.0 if part is parts[-1] else estimate_cost(begun) / total)
+        share = make_stage_progress(
+            progress, before, 1.0 if part is parts[-1] else estimate_cost(begun) / total
+        )
         done += run_blocks(part, threads, share, cancel, kept.add, look, search.stop, needed=kept.needed)[1]
     return work_of(search, begun, done)
 
@@ -242,9 +246,9 @@ def limited_work(
 ) -> Work:
     """Hands all fixtures up to a limit of the location error to those kept, and perhaps some beyond."""
     query, works = problem.query, list[Work]()
-    first = preferred_angles(query)
+    first = list_preferred_angles(query)
     for number, near in enumerate((limit.square, limit.aslant)):
-        share = stage(progress, number / 2, (number + 1) / 2)
+        share = make_stage_progress(progress, number / 2, (number + 1) / 2)
         search = ToolkitSearch.of(
             problem,
             threads=threads,
@@ -256,7 +260,7 @@ def limited_work(
         blocks = search.blocks(query.types, 4 * LEAST_BLOCKS, first=first, rest=number > 0)
         done = run_blocks(blocks, threads, share, cancel, kept.add, look, search.stop)[1]
         works.append(work_of(search, blocks, done))
-    statistics = summed([work.statistics for work in works])
+    statistics = sum_counts([work.statistics for work in works])
     return Work(
         all(work.complete for work in works),
         {**statistics, "features": len(problem.rows), **limit.statistics},
@@ -270,7 +274,7 @@ def bound_tilted_keys(query: Query, problem: Problem, cost: float) -> OrderKeys 
 
     None where it does not.
     """
-    return tilted_keys(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
+    return bound_keys_when_tilted(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
 
 
 def work_of(search: ToolkitSearch, blocks: Sequence[Block], done: Sequence[Block]) -> Work:

@@ -48,7 +48,7 @@ from workhold.kernels.curves.block_work import CONTACTS, CROSSED, PAIRS, STATIST
 from workhold.kernels.curves.sliding_pairs import sliding_fixtures
 from workhold.kernels.curves.three_and_one import three_and_one_cells
 from workhold.kernels.curves.two_and_two import two_and_two_cells
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 from workhold.listing.collector import Needed
 from workhold.model.first_choice import FACTORS
 from workhold.model.query import Query
@@ -478,7 +478,7 @@ def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | Non
 
 def contacts_of(problem: Problem, threads: int | None, cancel: Event | None = None) -> int:
     """Simultaneous contacts of a problem, see :func:`count_contacts`; fewer once ``cancel`` is set."""
-    workers = thread_count(threads)
+    workers = choose_thread_count(threads)
     search = ToolkitSearch.of(problem, counting=True, threads=workers, cancel=cancel)
     run_blocks(search.blocks(problem.query.types), workers, None, cancel, stop=search.stop)
     return int(search.totals[CONTACTS])

@@ -111,7 +111,7 @@ def find_pin_contacts(
             inside = part.slack - margin > -(1.2 * part.reach + LOOSE)
             kept = part if inside.all() else part.take(inside)
             parts.append(PinContacts(kept.line + start, kept.feature + first, *tail(kept)))
-    return PinContacts.joined(parts)
+    return PinContacts.concatenate(parts)
 
 
 def tail(places: PinContacts) -> tuple[Array, ...]:

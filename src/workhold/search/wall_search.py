@@ -26,8 +26,8 @@ from workhold.conventions import (
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC
 from workhold.kernels.contact.rules import ROUNDING
-from workhold.listing.clamp_placement import axis_of
-from workhold.listing.wall_fixtures import WallFixtures, placed_on_wall, wall_table
+from workhold.listing.clamp_placement import find_axis
+from workhold.listing.wall_fixtures import WallFixtures, make_wall_table, place_on_wall
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.query import Query
 from workhold.model.search_report import AT_AN_EDGE, Undecided
@@ -97,7 +97,7 @@ class WallSearch(FlushSearch):
 
     def placed(self, parts: list[WallFixtures], edge: int) -> FixtureTable:
         """The table of those pairs whose clamps have a place, each once."""
-        return placed_on_wall(WallFixtures.joined(parts), self.problem)
+        return place_on_wall(WallFixtures.concatenate(parts), self.problem)
 
     def on_rows(self, edge: int, lying: PartOnWall, chosen: tuple[int, int], rows: Array) -> PinContacts:
         """Contacts of pegs in rows of holes; balls decide those where a row grazes an arc."""
@@ -195,7 +195,7 @@ class WallSearch(FlushSearch):
 
         def alone(chosen: IntArray) -> FixtureTable:
             query = evolve(self.problem.query, toolkit=self.alone)
-            return wall_table(pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query))
+            return make_wall_table(pairs(chosen), np.zeros(1, np.int64), evolve(self.problem, query=query))
 
         good = np.flatnonzero(held)
         self.verified += len(good)
@@ -259,7 +259,7 @@ class WallSearch(FlushSearch):
             edge=edge,
             row=int(one.line[behind]),
             line=int(two.line[k]),
-            is_upright=axis_of(self.clamp) == 1,
+            is_upright=find_axis(self.clamp) == 1,
             features=(int(one.feature[behind]), int(two.feature[k])),
             branches=(float(one.branch[behind]), float(two.branch[k])),
         )
@@ -323,7 +323,7 @@ def find_fixtures_on_edge(
         search.locators += len(locators)
     if len(locators) == 0:
         return
-    along, upright = ([search for search in searches if axis_of(search.clamp) == axis] for axis in (0, 1))
+    along, upright = ([search for search in searches if find_axis(search.clamp) == axis] for axis in (0, 1))
     if along:
         places = locators
         if problem.moving != problem.standing:

@@ -19,11 +19,11 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem, Progress
 from workhold.conventions import GAP_SLACK, LEAST_SPAN, SAME_PLACE
 from workhold.fixels.toolkit import Carrier, Toolkit
-from workhold.listing.clamp_contacts import contacts_on_wall
-from workhold.listing.clamp_placement import last_holes
+from workhold.listing.clamp_contacts import make_contacts_on_wall
+from workhold.listing.clamp_placement import find_last_holes
 from workhold.listing.results import RankedTable, Work
-from workhold.listing.seats import ClampedSeats, Seats, seats_of
-from workhold.listing.wall_fixtures import WallFixtures, first_of_each, turned
+from workhold.listing.seats import ClampedSeats, Seats, make_seats
+from workhold.listing.wall_fixtures import WallFixtures, find_first_of_each, turn_points
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.notes import NoFixture, NoPair, NoPlace, Note
 from workhold.model.query import Query
@@ -73,7 +73,7 @@ class LatticePairSearch(FlushSearch):
         """The pairs that press the part as it lies on a hull edge, some at a time."""
         problem, lying = self.problem, self.lying_on(edge)
         for pairs in find_pairs_on_edge(
-            lying, self.lattice.pitch, last_holes(self.lattice), problem.contact_margin
+            lying, self.lattice.pitch, find_last_holes(self.lattice), problem.contact_margin
         ):
             good, open_, sharpened = select_pressed_pairs(pairs, edge, lying, problem)
             self.examined += len(pairs)
@@ -98,8 +98,8 @@ class LatticePairSearch(FlushSearch):
 
         Its lowest peg is in row 0, or farther back where it opens no wider.
         """
-        pairs = listed_once(LatticePairs.joined(parts))
-        travel, rows = self.lattice.travel, last_holes(self.lattice)[1]
+        pairs = listed_once(LatticePairs.concatenate(parts))
+        travel, rows = self.lattice.travel, find_last_holes(self.lattice)[1]
         assert travel is not None
         pitch = self.lattice.pitch[1]
         separation = pairs.point[:, :, 1].min(axis=1)
@@ -166,7 +166,7 @@ class LatticePairSearch(FlushSearch):
         column[:, 2], column[:, 3] = first, first + pairs.step[:, 0]
         row[:, 2], row[:, 3] = np.maximum(-pairs.step[:, 1], 0) + back, np.maximum(pairs.step[:, 1], 0) + back
         theta = np.full(count, flush.theta[edge])
-        start = turned(np.tile(flush.ends[edge, 0], (count, 1)), theta)
+        start = turn_points(np.tile(flush.ends[edge, 0], (count, 1)), theta)
         across, level = self.lattice.place(first, 0)
         share = pairs.null / pairs.null.sum(axis=1, keepdims=True)
         position = np.stack([across - pairs.point[:, 0, 0], np.zeros(count)], axis=1) - start
@@ -198,7 +198,7 @@ def listed_once(pairs: LatticePairs) -> LatticePairs:
     Contacts at a tangent joint are found on both features that meet there.
     """
     place = pairs.point.reshape(-1, 4) @ np.array([1.0, 0.7548776662, 0.5698402910, 0.4301597090])
-    return pairs.take(first_of_each((*pairs.step.T,), place, pairs.feature))
+    return pairs.take(find_first_of_each((*pairs.step.T,), place, pairs.feature))
 
 
 @define(eq=False)
@@ -253,11 +253,11 @@ class WallShares:
                 break
         if isinstance(self.collector, ClampedSeats):
             contacts = [
-                contacts_on_wall(WallFixtures.joined(parts), search.problem)
+                make_contacts_on_wall(WallFixtures.concatenate(parts), search.problem)
                 for search, parts in found.items()
                 if parts
             ]
-            return [seats_of(contacts, self.searches[0].problem)] if contacts else [], is_whole
+            return [make_seats(contacts, self.searches[0].problem)] if contacts else [], is_whole
         tables: list[FixtureTable | Seats] = []
         for number, (search, parts) in enumerate(found.items()):
             if parts:

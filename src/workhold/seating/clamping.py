@@ -34,7 +34,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import NO_REACTION
-from workhold.errors import listed
+from workhold.errors import join_words
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.kernels.seating.sticking import least_friction
 from workhold.limits import MOST_FRICTION
@@ -107,7 +107,7 @@ class Gauge:
 
     @property
     def carrier(self) -> Carrier:
-        carriers = (self.toolkit.carrier(peg.carrier) for peg in self.fixture.pegs)
+        carriers = (self.toolkit.find_carrier(peg.carrier) for peg in self.fixture.pegs)
         return next(carrier for carrier in carriers if carrier.travel is not None)
 
     @property
@@ -276,7 +276,7 @@ class ByHand:
         known = list(zip(self.fixture.pegs, self.pair.reactions, strict=True))[:LOCATORS]
         return tuple(tuple(peg for peg, pressed in known if pressed[k] < NO_REACTION) for k in range(2))
 
-    def as_fields(self, text: Callable[[float], str] = MILLIMETRE.text) -> dict[str, Any]:
+    def as_fields(self, text: Callable[[float], str] = MILLIMETRE.format_length) -> dict[str, Any]:
         """What is known and what to do, as JSON has it, with clamps and locators by their names.
 
         Parameters
@@ -294,7 +294,9 @@ class ByHand:
             "steps": self.steps(text),
         }
 
-    def steps(self, text: Callable[[float], str] = MILLIMETRE.text, with_order: bool = True) -> list[str]:
+    def steps(
+        self, text: Callable[[float], str] = MILLIMETRE.format_length, with_order: bool = True
+    ) -> list[str]:
         """What to do at the machine, and what to look at, one step each.
 
         Parameters
@@ -312,7 +314,7 @@ class ByHand:
         noun = self.toolkit.carriers[0].peg
         in_holes = f"all three {noun}s, " if len(locators) == LOCATORS else f"the {noun} in "
         flush = [f"the {one.noun}, flush," for one in self.toolkit.carriers if not one.contact.is_placed]
-        against = " and against ".join([*flush, in_holes + listed(locators)])
+        against = " and against ".join([*flush, in_holes + join_words(locators)])
         ways = (self.fixture.direction or "").split()
         # Of clamps that push against each other neither shows the way.
         way = "" if len({name[1] for name in ways}) < len(set(ways)) else f" {self.towards}"
@@ -321,11 +323,11 @@ class ByHand:
     @property
     def towards(self) -> str:
         """The direction in which both clamps push, in words."""
-        return self.toolkit.arrangement(self.fixture.type, self.fixture.direction).towards
+        return self.toolkit.find_arrangement(self.fixture.type, self.fixture.direction).towards
 
     def touch_words(self) -> str:
         """How to see that it lies right."""
-        touched = listed(
+        touched = join_words(
             [f"{peg.touching} at {place_of(peg, self.toolkit)}" for peg in self.fixture.pegs[:LOCATORS]]
         )
         out = "If no slip comes out, the part lies against all of them."
@@ -336,7 +338,7 @@ class ByHand:
         hold = "Hold the part in its place until both clamps are tight"
         first, names = name_first_clamps(self.fixture), name_clamps(self.fixture)
         loose = [
-            f"{name} alone does not press it on {listed(places_of(pegs, self.toolkit))}"
+            f"{name} alone does not press it on {join_words(places_of(pegs, self.toolkit))}"
             for name, pegs in zip(names, self.unpressed, strict=True)
             if name in first
         ]
@@ -374,7 +376,7 @@ class ByHand:
             f"a {one.name} of {text(one.length)} at {name}" for one, name in zip(settings, names, strict=True)
         ]
         wrong = "with other lengths the part lies against the locators another way"
-        return f"Try the paper again. The right lengths are {listed(lengths)}; {wrong}."
+        return f"Try the paper again. The right lengths are {join_words(lengths)}; {wrong}."
 
 
 def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
@@ -385,7 +387,7 @@ def by_hand(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> ByHand:
 
 def place_of(peg: Peg, toolkit: Toolkit) -> str:
     """Where a locator is, or an end of the contact with a wall."""
-    carrier = toolkit.carrier(peg.carrier)
+    carrier = toolkit.find_carrier(peg.carrier)
     if carrier.contact.is_placed:
         return peg.hole
     return f"the {carrier.noun} on the {peg.hole.rpartition(' ')[2]}"
@@ -393,7 +395,7 @@ def place_of(peg: Peg, toolkit: Toolkit) -> str:
 
 def places_of(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
     """Where some locators are; both ends of the contact with a wall are the wall."""
-    carriers = [toolkit.carrier(peg.carrier) for peg in pegs]
+    carriers = [toolkit.find_carrier(peg.carrier) for peg in pegs]
     walls = [one.noun for one in carriers if not one.contact.is_placed]
     if len(walls) < 2:
         return [place_of(peg, toolkit) for peg in pegs]

@@ -168,7 +168,7 @@ def entered(solver: Solver, fixture: Fixture, pattern: Pattern, config: Array, t
             raise InputError("the part lies in the fence there: put it clear of the fence.")
     pegs = [fixture.pegs[number] for number in pattern.numbers]
     for (x, y), off, peg in zip(points.tolist(), away.tolist(), pegs, strict=True):
-        radius = solver.toolkit.carrier(peg.carrier).peg_radius
+        radius = solver.toolkit.find_carrier(peg.carrier).peg_radius
         depth = radius + off if is_inside(x, y, rows) else radius - off
         if depth > ENTERS * radius:
             raise InputError(

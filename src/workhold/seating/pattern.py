@@ -116,7 +116,7 @@ class CommonToPatterns:
     def of(cls, toolkit: Toolkit, names: tuple[str, ...]) -> CommonToPatterns:
         """What patterns on carriers of some names have in common."""
         refuse_unseated(toolkit)
-        standing_on = [toolkit.carrier(name) for name in names]
+        standing_on = [toolkit.find_carrier(name) for name in names]
         numbers = tuple(k for k, carrier in enumerate(standing_on) if carrier.contact.is_placed)
         carriers = [standing_on[k] for k in numbers]
         moving = next(carrier for carrier in carriers if carrier.travel is not None)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from workhold.errors import refuse_kind
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.seating.columns import CONFIG, CONTACTS, FORCE, PEG, PIECE, SEPARATION
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 from workhold.model.fixture import Fixture
 from workhold.model.pose import Pose
 from workhold.model.result import Result
@@ -127,7 +127,7 @@ class Solver:
         fixtures = list(fixtures)
         for fixture in fixtures:
             fixture.refuse_others(self.workpiece, self.toolkit)
-        made = self.as_many(fixtures, with_cage, thread_count(threads))
+        made = self.as_many(fixtures, with_cage, choose_thread_count(threads))
         return [seating for seating in made if seating is not None]
 
     def as_many(

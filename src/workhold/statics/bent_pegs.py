@@ -93,14 +93,17 @@ class BentPegs:
         """What bending does, in a sentence; ``location_error`` in mm is named beside it where it is known."""
         most, hardest = self.most, self.hardest
         beside = (
-            "" if location_error is None else f", on top of its location error of {unit.text(location_error)}"
+            ""
+            if location_error is None
+            else f", on top of its location error of {unit.format_length(location_error)}"
         )
         at = self.at_force(mover, unit)
         return (
             f"{at[0].upper()}{at[1:]} {most.hole} gives way most, by "
-            f"{unit.text(most.deflection)} (at worst {unit.text(self.worst.worst_deflection)}), and {hardest.hole} "
-            f"is bent hardest, to {unit.stress_words(hardest.stress)}; that moves the part by up to "
-            f"{unit.text(self.movement)}{beside}."
+            f"{unit.format_length(most.deflection)} "
+            f"(at worst {unit.format_length(self.worst.worst_deflection)}), and {hardest.hole} "
+            f"is bent hardest, to {unit.format_stress(hardest.stress)}; that moves the part by up to "
+            f"{unit.format_length(self.movement)}{beside}."
         )
 
     @property
@@ -114,14 +117,14 @@ class BentPegs:
         if self.is_overbent:
             peg = self.hardest
             found.append(
-                f"{peg.hole} is bent to {unit.stress_words(peg.stress)} by {unit.force_words(peg.force)} "
-                f"{unit.text(peg.height, 1 if unit.millimetres == 1 else 2)} above its plate, more than the "
-                f"{unit.stress_words(self.stress_limit)} that a pin should take: use thicker or shorter pegs, or a smaller "
+                f"{peg.hole} is bent to {unit.format_stress(peg.stress)} by {unit.format_force(peg.force)} "
+                f"{unit.format_length(peg.height, 1 if unit.millimetres == 1 else 2)} above its plate, more than the "
+                f"{unit.format_stress(self.stress_limit)} that a pin should take: use thicker or shorter pegs, or a smaller "
                 f"{mover} force."
             )
         if self.gives_way:
             found.append(
-                f"Pegs that bend let the part move by {unit.text(self.movement)}: use thicker or shorter ones, or "
+                f"Pegs that bend let the part move by {unit.format_length(self.movement)}: use thicker or shorter ones, or "
                 "probe the part after clamping."
             )
         return found
@@ -152,8 +155,8 @@ def at_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
     mover : what presses, such as "jaw".
     """
     if jaw_force is not None:
-        return f"at a {mover} force of {unit.force_words(jaw_force)}"
-    return f"for each {'kN' if unit.newtons == 1 else unit.force_words(STATED_FORCE)} of {mover} force"
+        return f"at a {mover} force of {unit.format_force(jaw_force)}"
+    return f"for each {'kN' if unit.newtons == 1 else unit.format_force(STATED_FORCE)} of {mover} force"
 
 
 def bent_pegs(
@@ -177,7 +180,7 @@ def bent_pegs(
         return None
     touched = Touched.of(workpiece, toolkit)
     contacts = touched.of_fixture(fixture, toolkit)
-    carriers = np.array([toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)])
+    carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
     runs = PinRuns.of(faces, carriers, workpiece, toolkit, contacts.points, pressed_up_to, lift)
     silhouette = extremes(workpiece)
@@ -187,7 +190,7 @@ def bent_pegs(
     )
     force = (STATED_FORCE if jaw_force is None else jaw_force) * np.abs(contacts.inverses[0, 3])
     rows = [
-        BentPeg(peg.hole, toolkit.carrier(peg.carrier).peg, *map(float, values))
+        BentPeg(peg.hole, toolkit.find_carrier(peg.carrier).peg, *map(float, values))
         for peg, *values in zip(
             fixture.pegs,
             runs.diameter[0],

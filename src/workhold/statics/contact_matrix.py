@@ -37,7 +37,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.pose import Flush
 from workhold.model.workpiece import Workpiece
-from workhold.rowwise import largest
+from workhold.rowwise import find_largest
 
 __all__ = ["ContactMatrices", "Touched", "compute_outward_normals", "wrench_length", "wrenches"]
 
@@ -212,7 +212,7 @@ class Touched:
         touched = np.where(on_wall, edge[:, None], faces + self.segments * on)
         moves = self.moving.take(on)
         # Each fixture has an axis of its own where a toolkit has several carriers that move.
-        mover = largest(on * (moves > 0.0))
+        mover = find_largest(on * (moves > 0.0))
         known = self.contacts(pegs, pose, moves, -self.directions[mover], touched)
         points, normals, ends, edges, inverses = known
         # What lies flush on a wall ends nowhere that matters.
@@ -283,7 +283,7 @@ class Touched:
         return self.contact_matrices(
             np.array([[(peg.x, peg.y) for peg in fixture.pegs]]),
             np.array([[radians(pose.theta_deg), pose.x, pose.y]]),
-            np.array([toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)]),
+            np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)]),
             np.array([[peg.face for peg in fixture.pegs]]),
         )
 

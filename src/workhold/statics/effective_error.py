@@ -94,7 +94,7 @@ class EffectiveErrors:
     def holding(self, table: FixtureTable) -> BoolArray:
         """Which factors (N, F) hold of a table's fixtures, in the order of ``FACTORS``."""
         toolkit, angle = self.query.toolkit, classify_angles(table.theta)
-        carriers = toolkit.peg_carriers(table.arrangement)
+        carriers = toolkit.find_peg_carriers(table.arrangement)
         is_clamp = np.array([one.contact is CLAMP_TIP for one in toolkit.carriers])[carriers]
         is_placed = np.array([one.contact.is_placed for one in toolkit.carriers])[carriers]
         inside = self.unasked[table.face] & is_placed
@@ -154,7 +154,7 @@ class EffectiveErrors:
         slides = [plate for plate in toolkit.plates if plate.travel is not None]
         if any(plate.is_along_x == (axis == 0) for plate in slides) or (axis == 1 and toolkit.wall):
             return none, none
-        carriers, holes = toolkit.peg_carriers(table.arrangement), (table.column, table.row)[axis]
+        carriers, holes = toolkit.find_peg_carriers(table.arrangement), (table.column, table.row)[axis]
         counted = np.array([one.counted[axis] for one in toolkit.carriers])[carriers]
         ends = {plate.name: (plate.columns, plate.rows)[axis] or 0 for plate in toolkit.plates}
         last = np.array([ends.get(one.stands_on, 0) - 1 for one in toolkit.carriers])[carriers]

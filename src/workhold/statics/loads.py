@@ -42,10 +42,10 @@ from numpy.typing import NDArray
 
 from workhold.conventions import FLAT, NO_FORCE, OUTSIDE
 from workhold.errors import InputError
-from workhold.fixels.pegs import standoff
+from workhold.fixels.pegs import compute_standoff
 from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.contact.quality import HALF, HIGH_X, HIGH_Y, LOW_X, LOW_Y, MIDDLE_X, MIDDLE_Y
-from workhold.limits import MOST_FRICTION, real, refuse_strong
+from workhold.limits import MOST_FRICTION, convert_real, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.requirements import Load
 from workhold.model.workpiece import Workpiece
@@ -89,7 +89,7 @@ def jaw_stiffness(jaw: str | float) -> float:
         if word in STIFFNESS:
             return STIFFNESS[word]
     try:
-        value = float(jaw) if isinstance(jaw, str) else real(jaw)
+        value = float(jaw) if isinstance(jaw, str) else convert_real(jaw)
     except ValueError:
         value = -1.0
     if not value >= 0:
@@ -170,10 +170,10 @@ def find_contacts_on_part(
     ----------
     touched, matrices : what the toolkit's pegs touch of the part, and the contact matrix of the fixture.
     """
-    carriers = toolkit.carrier_numbers(peg.carrier for peg in fixture.pegs)
+    carriers = toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)
     faces = {face.number: face.segment for face in workpiece.numbered.faces}
     pegs = zip(fixture.pegs, (toolkit.carriers[number] for number in carriers), strict=True)
-    radii = np.array([standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
+    radii = np.array([compute_standoff(one.peg_radius, one.flat, faces[peg.face]) for peg, one in pegs])
     normals = matrices.normals[0]
     against = -fixture.pose.inverse.turn(touched.directions[carriers])
     return matrices.points[0] - radii[:, None] * normals, normals, touched.moving[carriers], against
@@ -310,8 +310,8 @@ def load_cases(
     fixture.refuse_others(workpiece, toolkit)
     loads = (loads,) if isinstance(loads, Load) else loads
     for name, value in (("jaw force", jaw_force), ("friction", friction)):
-        if value is not None and not (isfinite(real(value, name)) and value >= 0):
-            raise InputError(f"{name} {real(value):g} cannot be used: give 0 or more.")
+        if value is not None and not (isfinite(convert_real(value, name)) and value >= 0):
+            raise InputError(f"{name} {convert_real(value):g} cannot be used: give 0 or more.")
     refuse_strong("jaw force", jaw_force or 0.0)
     if friction is not None and friction > MOST_FRICTION:
         raise InputError(

@@ -56,8 +56,8 @@ def find_nearest_moves(
     line, tool, contact, span = (np.full(count, -1) for _ in range(4))
     found = NearestMove(np.full(count, inf), line, tool, contact, span, np.zeros(count, np.bool_))
     x, y = peg_places(table, toolkit, workpiece)
-    bolts = toolkit.places(table.arrangement, table.column, table.row, np.zeros(count))
-    carriers = toolkit.peg_carriers(table.arrangement)
+    bolts = toolkit.compute_hole_places(table.arrangement, table.column, table.row, np.zeros(count))
+    carriers = toolkit.find_peg_carriers(table.arrangement)
 
     def seen(points: tuple[Array, Array], rows: IntArray, k: int) -> Array:
         """Places (R, 2) of a contact of some rows in the part's coordinates."""

@@ -181,13 +181,13 @@ class CuttingNeed:
             f"with less the part leaves {self.jaw.element}."
         ]
         if self.room is not None:
-            given = unit.force_words(self.jaw_force)
+            given = unit.format_force(self.jaw_force)
             if self.room >= 0.0:
                 said.append(
-                    f"The {given} given leave {unit.force_words(round_force_down(self.room))} of room."
+                    f"The {given} given leave {unit.format_force(round_force_down(self.room))} of room."
                 )
             else:
-                lacking = f"{unit.force_above(-self.room)} {unit.force}"
+                lacking = f"{unit.format_force_rounded_up(-self.room)} {unit.force}"
                 said.append(f"The {given} given are {lacking} too little.")
         most = round_force_up(self.contact.force, unit)
         same = (self.contact.line, self.contact.tool) == (self.jaw.line, self.jaw.tool)
@@ -195,7 +195,7 @@ class CuttingNeed:
         at = f"in {(evolve(self.contact, done=None) if same else self.contact).place(unit)}"
         if self.contact.line is None:
             at = "whatever the tools do"
-        with_ = f"With {unit.force_words(self.jaw_force)} {self.contact.element}"
+        with_ = f"With {unit.format_force(self.jaw_force)} {self.contact.element}"
         said.append(f"{with_} presses with up to {most}, {at}.")
         return said
 
@@ -274,7 +274,7 @@ def find_cutting_needs(
     jaw_force : in N, with which the vise is closed; None where that is open.
     jaw : what closes it, see :func:`workhold.statics.loads.jaw_stiffness`.
     """
-    touched, carriers = Touched.of(workpiece, toolkit), toolkit.peg_carriers(table.arrangement)
+    touched, carriers = Touched.of(workpiece, toolkit), toolkit.find_peg_carriers(table.arrangement)
     pegs = np.stack(peg_places(table, toolkit, workpiece), axis=2)
     pose = np.column_stack([table.theta, table.position])
     matrices = touched.contact_matrices(pegs, pose, carriers, table.face.astype(np.int64))

@@ -46,7 +46,7 @@ from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
 from workhold.model.wall_ends import wall_ends
 from workhold.model.workpiece import Workpiece
-from workhold.rowwise import smallest
+from workhold.rowwise import find_smallest
 from workhold.statics.contact_matrix import ContactMatrices, Touched
 from workhold.statics.judging import Judging
 from workhold.statics.loads import compute_needed_jaw_forces
@@ -152,7 +152,7 @@ def measure_quality(
         block = table.take(slice(start, start + BLOCK))
         pose = np.column_stack([block.theta, block.position])
         faces = block.face.astype(np.int64)
-        carriers = toolkit.peg_carriers(block.arrangement)
+        carriers = toolkit.find_peg_carriers(block.arrangement)
         x, y = peg_places(block, toolkit, workpiece)
         contact_matrices = known.contact_matrices(np.stack([x, y], axis=2), pose, carriers, faces)
         figures(
@@ -187,7 +187,7 @@ def measure_quality(
             (ends,) = toolkit.ends_on_walls
             filled[:, JAW_CONTACT] = np.diff(x[:, ends], axis=1)[:, 0]
         filled[:, TILT] = tilts(block.theta, direction)
-        filled[:, SMALLEST_FACE] = smallest(measure_touched(block, toolkit, workpiece, sizes))
+        filled[:, SMALLEST_FACE] = find_smallest(measure_touched(block, toolkit, workpiece, sizes))
         if has_pins:
             runs = PinRuns.of(faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to)
             silhouette = corners, arcs

@@ -14,7 +14,7 @@ from attrs import evolve, fields
 
 from workhold.errors import InputError
 from workhold.fixels.support_hardware import SupportPads, TopClamp
-from workhold.limits import counting_number
+from workhold.limits import check_count
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.requirements import Load
@@ -175,7 +175,7 @@ def fixture_supports(
     """The supports of a fixture, see :meth:`workhold.Fixture.supports`."""
     query = fixture.listing.result.query
     request = make_request(query, thickness, given(asked))
-    return supports_of(fixture, query, request, loads, jaw_force, counting_number("best", best))
+    return supports_of(fixture, query, request, loads, jaw_force, check_count("best", best))
 
 
 def result_supports(
@@ -195,6 +195,6 @@ def result_supports(
     best : how many fixtures.
     each : how many sets of three for each of them; the rest as in :meth:`workhold.Fixture.supports`.
     """
-    count, sets = counting_number("best", best), counting_number("each", each)
+    count, sets = check_count("best", best), check_count("each", each)
     request, sets = make_request(result.query, thickness, given(asked)), 3 if sets is None else sets
     return tuple(yield_supports(list(islice(result, count)), result.query, request, loads, jaw_force, sets))

@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import MOST_FRICTION, real
+from workhold.limits import MOST_FRICTION, convert_real
 from workhold.model.support_request import SpatialLoad
 from workhold.model.support_triples import Supports, Triple
 from workhold.statics.contact_matrix import Touched
@@ -60,7 +60,7 @@ def clamp_with_friction(supports: Supports, triple: Triple, friction: float) -> 
     InputError
         For a coefficient that is none, and without loads.
     """
-    coefficient = real(friction)
+    coefficient = convert_real(friction)
     if not (isfinite(coefficient) and 0 <= coefficient <= MOST_FRICTION):
         raise InputError(
             f"friction {coefficient:g} cannot be used: give a coefficient from 0 to {MOST_FRICTION:g}, such "

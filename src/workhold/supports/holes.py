@@ -56,7 +56,7 @@ def find_holes_under_face(
     x, y = fixture.pose.apply(corners[:, 0], corners[:, 1])
     back, placed = fixture.pose.inverse, fixture.placed
     pegs = np.stack(back.apply(*np.array([(peg.x, peg.y) for peg in placed]).T), axis=1)
-    bodies = np.array([toolkit.carrier(peg.carrier).body_radius for peg in placed])
+    bodies = np.array([toolkit.find_carrier(peg.carrier).body_radius for peg in placed])
     found: list[tuple[Array, ...]] = []
     for number, carrier in enumerate(toolkit.carriers):
         if not carrier.has_lattice:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
-from workhold.limits import real, refuse_strong
+from workhold.limits import convert_real, refuse_strong
 from workhold.model.fixture import Fixture
 from workhold.model.own_outlines import numbered_solid
 from workhold.model.query import Query
@@ -241,10 +241,10 @@ def check_jaw_force(jaw_force: float | None) -> float | None:
     """A jaw force in N, or None; refuses one that is negative or no number."""
     if jaw_force is None:
         return None
-    if not (isfinite(real(jaw_force, "jaw force")) and real(jaw_force) >= 0):
-        raise InputError(f"jaw force {real(jaw_force):g} cannot be used: give 0 or more.")
-    refuse_strong("jaw force", real(jaw_force))
-    return real(jaw_force)
+    if not (isfinite(convert_real(jaw_force, "jaw force")) and convert_real(jaw_force) >= 0):
+        raise InputError(f"jaw force {convert_real(jaw_force):g} cannot be used: give 0 or more.")
+    refuse_strong("jaw force", convert_real(jaw_force))
+    return convert_real(jaw_force)
 
 
 def supports_of(

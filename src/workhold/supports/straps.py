@@ -88,7 +88,7 @@ class StrapQuestion:
             For a fixture that has other than three on one plate.
         """
         toolkit = toolkit_of(fixture)
-        still = [peg for peg in fixture.pegs if toolkit.carrier(peg.carrier).travel is None]
+        still = [peg for peg in fixture.pegs if toolkit.find_carrier(peg.carrier).travel is None]
         if len(toolkit.plates) != 1 or len(still) != LOCATORS:
             raise InputError(
                 "straps hold a part against three locators on one plate: take a fixture on a plate, or beside a fence."

@@ -14,7 +14,7 @@ from math import floor
 import numpy as np
 from attrs import evolve
 
-from workhold.errors import listed as listed_words
+from workhold.errors import join_words as listed_words
 from workhold.model.support_request import SupportRequest
 from workhold.model.support_triples import Supports, Triple
 from workhold.model.workpiece import Workpiece
@@ -64,7 +64,7 @@ def reason(found: Supports, unit: Unit) -> str:
     if found.query.program is not None and search.places(found.fixture).is_empty:
         return (
             "the tools of the program and the keep-outs leave no place on the upper face where a tip "
-            f"of radius {unit.text(request.tip_radius)} could stay; a smaller tip would help, or "
+            f"of radius {unit.format_length(request.tip_radius)} could stay; a smaller tip would help, or "
             "another set-up for the cuts under it, or another way to hold the part down."
         )
     holes = find_holes_under_face(found.fixture, toolkit, search.bottom, request)
@@ -84,8 +84,8 @@ def reason(found: Supports, unit: Unit) -> str:
     widest = max(compute_incircle_radius(holes.points[one]) for one in sets)
     if widest < request.inside:
         return (
-            f"in the largest triangle of them a clamp is {unit.text(widest)} from every side, "
-            f"and {unit.text(request.inside)} is asked for; a smaller tip would help, or less distance "
+            f"in the largest triangle of them a clamp is {unit.format_length(widest)} from every side, "
+            f"and {unit.format_length(request.inside)} is asked for; a smaller tip would help, or less distance "
             "inside the triangle."
         )
     helps = [
@@ -95,7 +95,7 @@ def reason(found: Supports, unit: Unit) -> str:
     ]
     helps += ["other keep-outs on top or the clamp's reach"] if request.top_zones or request.reach else []
     return (
-        f"the tip of radius {unit.text(request.tip_radius)} finds no place on the upper face "
+        f"the tip of radius {unit.format_length(request.tip_radius)} finds no place on the upper face "
         f"inside any triangle of the {found.positions} holes that could hold a support; "
         f"{', or '.join(helps)} would help."
     )
@@ -104,7 +104,7 @@ def reason(found: Supports, unit: Unit) -> str:
 def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
     """The words that of upper faces it is not known what is free, with what would help."""
     faces = "face" if len(heights) == 1 else "faces"
-    at = listed_words([unit.text(height) for height in heights])
+    at = listed_words([unit.format_length(height) for height in heights])
     return (
         f"so much of the part, or so many curves, stand beside the level {faces} at a height of "
         f"{at} that it is not known where a clamp has room; a file without those details would "
@@ -114,12 +114,14 @@ def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
 
 def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
     """That the tip fits on none of the upper faces, and what would help."""
-    margin = f", {unit.text(request.tip_margin)} from its border" if request.tip_margin else ""
-    head = f" and a head of radius {unit.text(request.head_radius)} above it" if request.rising else ""
+    margin = f", {unit.format_length(request.tip_margin)} from its border" if request.tip_margin else ""
+    head = (
+        f" and a head of radius {unit.format_length(request.head_radius)} above it" if request.rising else ""
+    )
     smaller = "a smaller tip or head" if head else "a smaller tip"
     return (
         "no clamp can press from above, because no level face of the part that is open upward "
-        f"has room for a tip of radius {unit.text(request.tip_radius)}{margin}{head}; {smaller} "
+        f"has room for a tip of radius {unit.format_length(request.tip_radius)}{margin}{head}; {smaller} "
         f"would help{turned}."
     )
 
@@ -128,7 +130,7 @@ def explain_few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
     """What is in the way where fewer than three holes have room for a pad."""
     request, few = found.request, ("no hole has", "only one hole has", "only two holes have")[found.positions]
     spare = np.sort(bare.spare)[::-1] - request.pad_margin
-    pad = f"{few} room for a pad of radius {unit.text(request.pad_radius)}"
+    pad = f"{few} room for a pad of radius {unit.format_length(request.pad_radius)}"
     if len(spare) < 3 or spare[2] <= 0.0:
         return (
             f"{pad}, and fewer than three lie under the lower face clear of the pegs at all; a finer pitch "
@@ -140,10 +142,10 @@ def explain_few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
     if enough < min(least, request.pad_radius):
         turned = "" if found.query.workpiece.solid is None else ", another side up"
         return (
-            f"{pad}, and no three have it for pads of radius {unit.text(least)}; a finer pitch would "
+            f"{pad}, and no three have it for pads of radius {unit.format_length(least)}; a finer pitch would "
             f"help{turned}, or another fixture."
         )
-    return f"{pad}; three have it for pads of radius {unit.text(enough)}."
+    return f"{pad}; three have it for pads of radius {unit.format_length(enough)}."
 
 
 def compute_incircle_radius(corners: np.ndarray) -> float:
@@ -167,7 +169,7 @@ def set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
     return [
         " ".join(pad.hole for pad in triple.supports),
         f"({unit.number(clamp.at[0])}, {unit.number(clamp.at[1])})",
-        *(unit.force_number(size, 0) for size in sizes),
+        *(unit.format_force_number(size, 0) for size in sizes),
         unit.number(clamp.arm),
         unit.number(triple.standing),
     ]
@@ -185,13 +187,13 @@ def write_listing_notes(
     notes = []
     if found.loads and listed and found.jaw_force > 0:
         notes.append(
-            f"All figures are for a closing force of {unit.force_words(found.jaw_force)}, without friction."
+            f"All figures are for a closing force of {unit.format_force(found.jaw_force)}, without friction."
         )
     moved = {one.travel for one in listed if one.travel is not None}
     if any(abs(one - found.fixture.travel) > SAME_OPENING for one in moved):
         notes.append(
             "With these supports the jaws stand elsewhere in their holes, opened to "
-            f"{', '.join(unit.text(one) for one in sorted(moved))}; columns are counted as for the fixture."
+            f"{', '.join(unit.format_length(one) for one in sorted(moved))}; columns are counted as for the fixture."
         )
     notes += place_notes(dict(enumerate(listed, 1)))
     return notes + write_flat_faces_notes(found.query.workpiece, keep_off)

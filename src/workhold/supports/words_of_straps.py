@@ -27,7 +27,8 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
         )
     if found.straps:
         steps.append(
-            f"Set the heels {' and '.join(unit.text(one) for one in sorted({one.height for one in found.straps}))} high, as "
+            "Set the heels "
+            f"{' and '.join(unit.format_length(one) for one in sorted({one.height for one in found.straps}))} high, as "
             "high as the face under each tip, and tighten the straps while the hand pushes"
         )
     if found.clamp_needed is not None:

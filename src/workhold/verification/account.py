@@ -61,14 +61,14 @@ from workhold.model.notes import (
 from workhold.model.program import Program
 from workhold.model.search_report import Proof
 from workhold.verification.ball_geometry import PRECISIONS
-from workhold.verification.contacts import every_outline
+from workhold.verification.contacts import make_joint_outline
 from workhold.verification.listing import Listing
 from workhold.verification.repeats import KnownFixtures
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.seat_clamps import pairs_at
-from workhold.verification.undecided import undecided_faults
+from workhold.verification.seat_clamps import count_pairs_at_seat
+from workhold.verification.undecided import find_undecided_faults
 
-__all__ = ["account_faults", "is_by_algebra", "seat_faults", "too_few_contacts"]
+__all__ = ["find_account_faults", "is_by_algebra", "seat_faults", "has_too_few_contacts"]
 
 SEARCH = ("features", "chord_curves", "sliding_pairs", "curve_pairs", "crossings_sought", "contacts_examined")
 # Counts besides, where only the best were sought up to a limit of the location error.
@@ -79,25 +79,25 @@ ALGEBRA = ("features", "systems", "orientations", "simultaneous_contacts", "unde
 MOST_NAMED = 20
 
 
-def account_faults(listing: Listing, rotations: int) -> Iterator[str]:
-    """Contradictions between a result's numbers about itself and what it lists; one sentence each.
+def find_account_faults(listing: Listing, rotations: int) -> Iterator[str]:
+    """Yield the contradictions between a result's numbers about itself and what it lists; one sentence each.
 
     At most so many ``rotations`` carry the part onto itself.
     """
     yield from count_faults(listing, rotations)
-    yield from seating_faults(listing)
+    yield from find_seating_count_faults(listing)
     if listing.query.toolkit.travels > 1:
-        yield from pair_count_faults(listing)
+        yield from find_pair_count_faults(listing)
     if listing.proof is None:
         yield "it has no proof, the account of the search"
     else:
-        yield from proof_faults(listing, listing.proof)
-    yield from statistics_faults(listing)
+        yield from find_proof_faults(listing, listing.proof)
+    yield from find_statistics_faults(listing)
     yield from note_faults(listing)
 
 
 def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
-    """Contradictions among the fixtures listed, counts, found and distinct."""
+    """Yield the contradictions among the fixtures listed, counts, found and distinct."""
     for kind, counts in listing.counts.items():
         listed = sum(fixture.type == kind for fixture in listing.fixtures)
         found, distinct = listing.found[kind], listing.distinct[kind]
@@ -119,8 +119,8 @@ def count_faults(listing: Listing, rotations: int) -> Iterator[str]:
         yield f"found says {found} fixtures, but {listed} are listed, and nothing says why"
 
 
-def seating_faults(listing: Listing) -> Iterator[str]:
-    """Contradictions between how many fixtures have their seating stated and how many should."""
+def find_seating_count_faults(listing: Listing) -> Iterator[str]:
+    """Yield the contradictions between how many fixtures have their seating stated and how many should."""
     query, listed = listing.query, len(listing.fixtures)
     # With two clamps there is none to state.
     first = listing.fixtures[: (query.seating or 0) if query.toolkit.closes_at_once else 0]
@@ -133,8 +133,8 @@ def seating_faults(listing: Listing) -> Iterator[str]:
         yield f"the seating of more fixtures is stated than of the {len(first)} that it is asked of"
 
 
-def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
-    """Contradictions in the account of the candidates."""
+def find_proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
+    """Yield the contradictions in the account of the candidates."""
     undecided, found = len(proof.undecided), sum(listing.found.values())
     accounted = proof.discarded_by_bound + proof.verified + undecided
     if accounted != proof.candidates:
@@ -142,7 +142,7 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
             f"the proof says {proof.candidates} candidates, but {accounted} are discarded, verified or "
             "undecided"
         )
-    yield from undecided_faults(proof.undecided, listing.query)
+    yield from find_undecided_faults(proof.undecided, listing.query)
     if proof.escalated > proof.candidates:
         yield f"the proof says {proof.escalated} of {proof.candidates} candidates were escalated"
     # Of two clamps whether they close may be in doubt where neither was.
@@ -150,12 +150,12 @@ def proof_faults(listing: Listing, proof: Proof) -> Iterator[str]:
     pairs = listing.query.toolkit.travels > 1
     if (single if pairs else undecided) and not proof.escalated:
         yield f"the proof says that {undecided} candidates are undecided, but none was escalated"
-    if too_few_contacts(listing, proof) if pairs else found > proof.verified:
+    if has_too_few_contacts(listing, proof) if pairs else found > proof.verified:
         yield f"the proof says {proof.verified} candidates were verified, but {found} fixtures were found"
 
 
-def statistics_faults(listing: Listing) -> Iterator[str]:
-    """Contradictions in the numbers that say how much work the search was."""
+def find_statistics_faults(listing: Listing) -> Iterator[str]:
+    """Yield the contradictions in the numbers that say how much work the search was."""
     numbers, proof = listing.statistics, listing.proof
     is_flush = WALL_END in listing.query.toolkit.contacts
     known = [FENCE] if is_flush else [SEARCH, ALGEBRA]
@@ -195,7 +195,7 @@ def statistics_faults(listing: Listing) -> Iterator[str]:
 
 
 def is_by_algebra(statistics: Mapping[str, int]) -> bool:
-    """Whether the engine was the paper's algebra, from the statistics of a result."""
+    """Return whether the engine was the paper's algebra, from the statistics of a result."""
     return set(statistics) == set(ALGEBRA)
 
 
@@ -204,9 +204,9 @@ Wanted = tuple[Note, Callable[[Note], bool]]
 
 
 def note_faults(listing: Listing) -> Iterator[str]:
-    """Notes that are missing, and those that do not follow from the numbers."""
+    """Yield the notes that are missing, and those that do not follow from the numbers."""
     left = list(listing.notes)
-    for example, will_do in notes_implied(listing):
+    for example, will_do in list_expected_notes(listing):
         said = next((note for note in left if will_do(note)), None)
         if said is None:
             yield f'the note is missing that says "{example}"'
@@ -217,34 +217,34 @@ def note_faults(listing: Listing) -> Iterator[str]:
             yield f'the note "{note.words[:80]}" does not follow from what the result says'
 
 
-def alone(note: Note) -> Wanted:
+def expect_note(note: Note) -> Wanted:
     return note, lambda other: other == note
 
 
-def notes_implied(listing: Listing) -> Iterator[Wanted]:
-    """The notes that there must be."""
+def list_expected_notes(listing: Listing) -> Iterator[Wanted]:
+    """Yield the notes that there must be."""
     query, proof, found = listing.query, listing.proof, sum(listing.found.values())
     if query.workpiece.departure > 0:
-        yield alone(FittedOutline(query.workpiece.departure))
+        yield expect_note(FittedOutline(query.workpiece.departure))
     undecided = 0 if proof is None else len(proof.undecided)
     if undecided:
-        yield alone(LeftUndecided(undecided))
+        yield expect_note(LeftUndecided(undecided))
     if found and query.has_seating_rules:
         most, listed = min(query.seating or 0, found), len(listing.fixtures)
         yield Seated(most, listed), lambda note: isinstance(note, Seated) and is_as_seated(note, listing)
     if found and query.seating is not None and not query.toolkit.closes_at_once:
-        yield alone(PushedByHand())
+        yield expect_note(PushedByHand())
     systems = listing.statistics.get("undecided", 0)
     for _ in range(min(systems, MOST_NAMED)):
         yield MoreSystems(systems), lambda note: isinstance(note, UndecidedSystem)
     if systems > MOST_NAMED:
-        yield alone(MoreSystems(systems - MOST_NAMED))
+        yield expect_note(MoreSystems(systems - MOST_NAMED))
     if listing.complete and not found and not undecided and not is_by_algebra(listing.statistics):
-        yield reason_wanted(listing, 0 if proof is None else proof.verified)
+        yield expect_reason(listing, 0 if proof is None else proof.verified)
 
 
-def reason_wanted(listing: Listing, verified: int) -> Wanted:
-    """The note that says why nothing is listed; what the search alone knows is in it as it will be.
+def expect_reason(listing: Listing, verified: int) -> Wanted:
+    """Return the note that says why nothing is listed; what the search alone knows is in it as it will be.
 
     So it is with the seats that were looked at, and with the line of a program that is most in the way.
     """
@@ -286,7 +286,7 @@ def is_line_of(program: Program | None, line: int) -> bool:
 
 
 def may_be_said(note: Note, listing: Listing) -> bool:
-    """Whether a note fits that need not be there."""
+    """Return whether a note fits that need not be there."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     match note:
         case BestOnly(best):
@@ -307,7 +307,7 @@ def may_be_said(note: Note, listing: Listing) -> bool:
 
 
 def is_as_seated(note: Seated, listing: Listing) -> bool:
-    """Whether so many fixtures may have had their seating worked out, and so many be as asked."""
+    """Return whether so many fixtures may have had their seating worked out, and so many be as asked."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
     least = most if listing.complete else listed
@@ -316,8 +316,8 @@ def is_as_seated(note: Seated, listing: Listing) -> bool:
     return least <= note.looked_at <= most and listed <= note.kept <= kept
 
 
-def pair_count_faults(listing: Listing) -> Iterator[str]:
-    """Contradictions among pairs, seats and what is listed."""
+def find_pair_count_faults(listing: Listing) -> Iterator[str]:
+    """Yield the contradictions among pairs, seats and what is listed."""
     found, listed = sum(listing.found.values()), len(listing.fixtures)
     pairs, seats = listing.pairs, listing.seats
     if is_uncounted(listing):
@@ -344,12 +344,12 @@ def pair_count_faults(listing: Listing) -> Iterator[str]:
 
 
 def is_uncounted(listing: Listing) -> bool:
-    """Whether a note says that what cannot be among the best was left out uncounted."""
+    """Return whether a note says that what cannot be among the best was left out uncounted."""
     return BestOnly(listing.query.best or 0) in listing.notes
 
 
 def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
-    """Numbers of seats, or of pairs at one, that differ from those derived where every pair is listed."""
+    """Yield the numbers of seats, or of pairs at one, that differ from those derived where every pair is listed."""
     query, found = listing.query, sum(listing.found.values())
     if query.toolkit.travels == 1 or query.listing != "all" or found != len(listing.fixtures):
         return
@@ -366,9 +366,9 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
     if not listing.complete or refuted:
         return
     with ctx.workprec(PRECISIONS[0]):
-        outline = every_outline(query.workpiece)
+        outline = make_joint_outline(query.workpiece)
         for index, count in sorted(at_seat.items()):
-            limits = pairs_at(listing.fixtures[index], query, hardware, outline)
+            limits = count_pairs_at_seat(listing.fixtures[index], query, hardware, outline)
             if limits is not None and not limits[0] <= count <= limits[1]:
                 yield (
                     f"there are {limits[0]} pairs of clamps at the seat of fixture {index + 1}, and {count} "
@@ -377,8 +377,8 @@ def seat_faults(listing: Listing, refuted: Collection[int]) -> Iterator[str]:
                 return
 
 
-def too_few_contacts(listing: Listing, proof: Proof) -> bool:
-    """Whether fewer contacts of locators, or wall and locator, and a clamp were verified than needed."""
+def has_too_few_contacts(listing: Listing, proof: Proof) -> bool:
+    """Return whether fewer contacts of locators, or wall and locator, and a clamp were verified than needed."""
     found, pairs = sum(listing.found.values()), len(listing.query.toolkit.arrangements)
     if 2 * (listing.seats or 0) > pairs * proof.verified:
         return True

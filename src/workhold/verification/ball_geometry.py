@@ -46,20 +46,20 @@ __all__ = [
     "LineSide",
     "Point",
     "Side",
-    "arc_side",
+    "make_arc_side",
     "cross",
-    "dot",
-    "exact_point",
-    "box_center",
-    "largest",
-    "least",
-    "line_side",
-    "loop_sides",
-    "minus",
-    "norm",
-    "root",
-    "turned",
-    "vertex_side",
+    "compute_dot_product",
+    "make_exact_point",
+    "compute_box_center",
+    "find_largest",
+    "find_least",
+    "make_line_side",
+    "make_loop_sides",
+    "subtract",
+    "compute_norm",
+    "compute_square_root",
+    "turn_vector",
+    "make_side_at_vertex",
 ]
 
 Point = tuple[arb, arb]
@@ -68,43 +68,43 @@ Point = tuple[arb, arb]
 PRECISIONS = (128, 256, 512)
 
 
-def exact_point(x: float, y: float) -> Point:
+def make_exact_point(x: float, y: float) -> Point:
     return arb(x), arb(y)
 
 
-def minus(a: Point, b: Point) -> Point:
+def subtract(a: Point, b: Point) -> Point:
     return a[0] - b[0], a[1] - b[1]
 
 
-def dot(a: Point, b: Point) -> arb:
+def compute_dot_product(a: Point, b: Point) -> arb:
     return a[0] * b[0] + a[1] * b[1]
 
 
 def cross(a: Point, b: Point) -> arb:
-    """Third component of the vector product."""
+    """Return the third component of the vector product."""
     return a[0] * b[1] - a[1] * b[0]
 
 
-def root(square: arb) -> arb:
-    """Square root of a number that is not negative, though its ball may reach below 0."""
+def compute_square_root(square: arb) -> arb:
+    """Return the square root of a number that is not negative, though its ball may reach below 0."""
     return square.sqrt() if square > 0 else arb(0).union(square.abs_upper().sqrt())
 
 
-def norm(a: Point) -> arb:
-    """Length of a vector, also where the ball holds the null vector."""
-    return root(dot(a, a))
+def compute_norm(a: Point) -> arb:
+    """Return the length of a vector, also where the ball holds the null vector."""
+    return compute_square_root(compute_dot_product(a, a))
 
 
-def turned(a: Point, cosine: arb, sine: arb) -> Point:
-    """A vector turned counter-clockwise."""
+def turn_vector(a: Point, cosine: arb, sine: arb) -> Point:
+    """Return a vector turned counter-clockwise."""
     return cosine * a[0] - sine * a[1], sine * a[0] + cosine * a[1]
 
 
-def least(values: Sequence[arb]) -> arb:
+def find_least(values: Sequence[arb]) -> arb:
     return reduce(arb.min, values)
 
 
-def largest(values: Sequence[arb]) -> arb:
+def find_largest(values: Sequence[arb]) -> arb:
     return reduce(arb.max, values)
 
 
@@ -134,38 +134,40 @@ class LineSide:
         """Outward unit normal."""
         return self.tangent[1], -self.tangent[0]
 
-    def gap(self, point: Point) -> arb:
-        """Signed distance in mm of a point from the carrying line."""
-        return dot(self.normal, point) - self.level
+    def compute_gap(self, point: Point) -> arb:
+        """Return the signed distance in mm of a point from the carrying line."""
+        return compute_dot_product(self.normal, point) - self.level
 
-    def distance(self, point: Point) -> arb:
-        """Distance in mm of a point from the side."""
-        from_start = minus(point, self.start)
-        along = dot(from_start, self.tangent)
+    def compute_distance(self, point: Point) -> arb:
+        """Return the distance in mm of a point from the side."""
+        from_start = subtract(point, self.start)
+        along = compute_dot_product(from_start, self.tangent)
         if along > 0 and along < self.length:
             return abs(cross(self.tangent, from_start))
         if along < 0:
-            return norm(from_start)
-        from_end = minus(point, self.end)
+            return compute_norm(from_start)
+        from_end = subtract(point, self.end)
         if along > self.length:
-            return norm(from_end)
-        return abs(cross(self.tangent, from_start)).union(norm(from_start).min(norm(from_end)))
+            return compute_norm(from_end)
+        return abs(cross(self.tangent, from_start)).union(
+            compute_norm(from_start).min(compute_norm(from_end))
+        )
 
-    def away(self, point: Point) -> Point | None:
-        """A vector from the nearest point of the side to a point, of any length; None where uncertain."""
-        along = dot(minus(point, self.start), self.tangent)
+    def find_vector_away(self, point: Point) -> Point | None:
+        """Return a vector from the nearest point of the side to a point, of any length; None where uncertain."""
+        along = compute_dot_product(subtract(point, self.start), self.tangent)
         if along > 0 and along < self.length:
             return self.normal
         end = self.start if along < 0 else self.end if along > self.length else None
-        return None if end is None else minus(point, end)
+        return None if end is None else subtract(point, end)
 
-    def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
-        """Slacks in mm of a peg's centre on the side moved out by ``offset``."""
-        along = dot(minus(point, self.start), self.tangent)
+    def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
+        """Return the slacks in mm of a peg's centre on the side moved out by ``offset``."""
+        along = compute_dot_product(subtract(point, self.start), self.tangent)
         return along, self.length - along
 
-    def outward(self, point: Point) -> Point:
-        """Outward unit normal at the foot of a point."""
+    def compute_outward_normal(self, point: Point) -> Point:
+        """Return the outward unit normal at the foot of a point."""
         return self.normal
 
 
@@ -192,101 +194,101 @@ class ArcSide:
     half_sweep: arb
     whole: bool
 
-    def reach(self, offset: arb) -> arb:
-        """Radius in mm of the arc moved out by ``offset``."""
+    def compute_offset_radius(self, offset: arb) -> arb:
+        """Return the radius in mm of the arc moved out by ``offset``."""
         return self.radius + self.sign * offset
 
     def from_center(self, point: Point) -> Point:
-        """Vector from the centre to a point."""
-        return minus(point, self.center)
+        """Return the vector from the centre to a point."""
+        return subtract(point, self.center)
 
-    def gap(self, point: Point) -> arb:
-        """Signed distance in mm of a point from the carrying circle."""
-        return self.sign * (norm(self.from_center(point)) - self.radius)
+    def compute_gap(self, point: Point) -> arb:
+        """Return the signed distance in mm of a point from the carrying circle."""
+        return self.sign * (compute_norm(self.from_center(point)) - self.radius)
 
-    def distance(self, point: Point) -> arb:
-        """Distance in mm of a point from the side."""
+    def compute_distance(self, point: Point) -> arb:
+        """Return the distance in mm of a point from the side."""
         ray = self.from_center(point)
-        from_circle = abs(norm(ray) - self.radius)
-        within = self.within(ray)
+        from_circle = abs(compute_norm(ray) - self.radius)
+        within = self.measure_within(ray)
         if self.whole or within > 0:
             return from_circle
-        from_ends = norm(minus(point, self.start)).min(norm(minus(point, self.end)))
+        from_ends = compute_norm(subtract(point, self.start)).min(compute_norm(subtract(point, self.end)))
         return from_ends if within < 0 else from_circle.union(from_ends)
 
-    def away(self, point: Point) -> Point | None:
-        """A vector from the nearest point of the side to a point, of any length; None where uncertain."""
+    def find_vector_away(self, point: Point) -> Point | None:
+        """Return a vector from the nearest point of the side to a point, of any length; None where uncertain."""
         ray = self.from_center(point)
-        within = self.within(ray)
+        within = self.measure_within(ray)
         if self.whole or within > 0:
             return ray
-        ways = [minus(point, end) for end in (self.start, self.end)]
-        one, two = (dot(way, way) for way in ways)
+        ways = [subtract(point, end) for end in (self.start, self.end)]
+        one, two = (compute_dot_product(way, way) for way in ways)
         if not within < 0:
             return None
         return ways[0] if one < two else ways[1] if two < one else None
 
-    def within(self, ray: Point) -> arb:
-        """Positive for a ray from the centre through the arc, negative beside it."""
-        return dot(self.middle, ray) - norm(ray) * self.half_sweep.cos()
+    def measure_within(self, ray: Point) -> arb:
+        """Return the positive for a ray from the centre through the arc, negative beside it."""
+        return compute_dot_product(self.middle, ray) - compute_norm(ray) * self.half_sweep.cos()
 
-    def slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
-        """Slacks in mm of a peg's centre on the arc moved out by ``offset``; none on a whole circle."""
+    def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
+        """Return the slacks in mm of a peg's centre on the arc moved out by ``offset``; none on a whole circle."""
         if self.whole:
             return ()
         ray = self.from_center(point)
-        angle = self.sign * arb.atan2(cross(self.middle, ray), dot(self.middle, ray))
-        reach = self.reach(offset)
+        angle = self.sign * arb.atan2(cross(self.middle, ray), compute_dot_product(self.middle, ray))
+        reach = self.compute_offset_radius(offset)
         return (self.half_sweep + angle) * reach, (self.half_sweep - angle) * reach
 
-    def outward(self, point: Point) -> Point:
-        """Outward unit normal at the foot of a point."""
+    def compute_outward_normal(self, point: Point) -> Point:
+        """Return the outward unit normal at the foot of a point."""
         ray = self.from_center(point)
-        far = norm(ray)
+        far = compute_norm(ray)
         return self.sign * ray[0] / far, self.sign * ray[1] / far
 
 
 Side = LineSide | ArcSide
 
 
-def line_side(start: Point, end: Point) -> LineSide:
-    step = minus(end, start)
-    length = norm(step)
+def make_line_side(start: Point, end: Point) -> LineSide:
+    step = subtract(end, start)
+    length = compute_norm(step)
     tangent = step[0] / length, step[1] / length
     return LineSide(start, end, tangent, length, tangent[1] * start[0] - tangent[0] * start[1])
 
 
-def arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
-    """The arc between two points with a bulge.
+def make_arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
+    """Return the arc between two points with a bulge.
 
     With chord (dx, dy) the centre lies (1 - b²)/(4b) chords to the left of the chord's middle, and the radius
     is (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
     """
     b = arb(bulge)
-    dx, dy = minus(end, start)
+    dx, dy = subtract(end, start)
     left = (1 - b * b) / (4 * b)
     center = (start[0] + end[0]) / 2 - dy * left, (start[1] + end[1]) / 2 + dx * left
-    chord = norm((dx, dy))
+    chord = compute_norm((dx, dy))
     sign = 1 if bulge > 0 else -1
     middle = sign * dy / chord, -sign * dx / chord
     radius = chord * (1 + b * b) / (4 * abs(b))
     return ArcSide(start, end, center, radius, sign, middle, 2 * abs(b).atan(), False)
 
 
-def vertex_side(vertex: Vertex, following: Vertex) -> Side:
-    """The side that begins at a vertex (x, y, bulge)."""
-    start, end = exact_point(*vertex[:2]), exact_point(*following[:2])
-    return line_side(start, end) if abs(vertex[2]) < STRAIGHT else arc_side(start, end, vertex[2])
+def make_side_at_vertex(vertex: Vertex, following: Vertex) -> Side:
+    """Return the side that begins at a vertex (x, y, bulge)."""
+    start, end = make_exact_point(*vertex[:2]), make_exact_point(*following[:2])
+    return make_line_side(start, end) if abs(vertex[2]) < STRAIGHT else make_arc_side(start, end, vertex[2])
 
 
-def loop_sides(loop: NDArray[np.float64]) -> list[Side]:
-    """The sides of a closed chain of vertices (N, 3)."""
+def make_loop_sides(loop: NDArray[np.float64]) -> list[Side]:
+    """Return the sides of a closed chain of vertices (N, 3)."""
     vertices = [(float(x), float(y), float(bulge)) for x, y, bulge in loop]
-    return [vertex_side(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
+    return [make_side_at_vertex(a, b) for a, b in zip(vertices, vertices[1:] + vertices[:1], strict=True)]
 
 
-def whole_face(run: Sequence[Side]) -> Side:
-    """One side for neighbours that continue the same line or circle.
+def join_sides_to_face(run: Sequence[Side]) -> Side:
+    """Return one side for neighbours that continue the same line or circle.
 
     They agree to rounding only: a line runs from the first start to the last end, a circle is that of the
     first arc.
@@ -295,12 +297,12 @@ def whole_face(run: Sequence[Side]) -> Side:
     if len(run) == 1:
         return first
     if isinstance(first, LineSide):
-        return line_side(first.start, last.end)
+        return make_line_side(first.start, last.end)
     half_sweep = sum((side.half_sweep for side in run if isinstance(side, ArcSide)), arb(0))
     whole = bool(half_sweep > arb.pi() - WHOLE)
     ray = first.from_center(first.start)
-    far = norm(ray)
-    middle = turned((ray[0] / far, ray[1] / far), half_sweep.cos(), first.sign * half_sweep.sin())
+    far = compute_norm(ray)
+    middle = turn_vector((ray[0] / far, ray[1] / far), half_sweep.cos(), first.sign * half_sweep.sin())
     return ArcSide(first.start, last.end, first.center, first.radius, first.sign, middle, half_sweep, whole)
 
 
@@ -327,25 +329,26 @@ class BallOutline:
     own: Mapping[str, BallOutline] = {}
 
     @classmethod
-    def of(cls, workpiece: Workpiece, number: int = 0) -> BallOutline:
-        """The outline at the precision in force, its segments numbered from ``number``."""
+    def from_workpiece(cls, workpiece: Workpiece, number: int = 0) -> BallOutline:
+        """Return the outline at the precision in force, its segments numbered from ``number``."""
         segments, before = list[Side](), list[int]()
         for loop in workpiece.loops:
             first, count = len(segments), len(loop)
-            segments += loop_sides(loop)
+            segments += make_loop_sides(loop)
             before += [first + (k - 1) % count for k in range(count)]
         after = {neighbour: k for k, neighbour in enumerate(before)}
         faces, others, neighbours, turns = (dict[int, Any]() for _ in range(4))
         for face in workpiece.faces:
             key, run = number + face.number, face.segments
-            faces[key] = side = whole_face([segments[k] for k in run])
+            faces[key] = side = join_sides_to_face([segments[k] for k in run])
             others[key] = tuple((number + k, other) for k, other in enumerate(segments) if k not in run)
             neighbours[key] = one, two = segments[before[run[0]]], segments[after[run[-1]]]
             turns[key] = turn_at(one, side, side.start), turn_at(side, two, side.end)
         return cls(tuple(segments), faces, others, neighbours, turns)
 
-    def smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
-        """Whether a face meets its neighbours tangentially at its start and end, for pegs that touch it.
+    def find_smooth_ends(self, face: int, has_flat: bool) -> tuple[bool, bool]:
+        """Return whether a face meets its neighbours tangentially at its start and end, for pegs that touch
+        it.
 
         One with a flat changes over from flat to round between a line and an arc.
         """
@@ -360,15 +363,15 @@ class BallOutline:
 
 
 def turn_at(one: Side, two: Side, joint: Point) -> arb:
-    """The larger component of the difference of two sides' normals at a joint.
+    """Return the larger component of the difference of two sides' normals at a joint.
 
     The sides meet tangentially where it is below ``TANGENT``.
     """
-    x, y = minus(one.outward(joint), two.outward(joint))
+    x, y = subtract(one.compute_outward_normal(joint), two.compute_outward_normal(joint))
     return abs(x).max(abs(y))
 
 
-def box_center(outline: BallOutline) -> Point:
+def compute_box_center(outline: BallOutline) -> Point:
     """Centre in mm of the bounding box of a workpiece.
 
     The box is that of its joints, and of the arcs where they run along x or y.
@@ -376,8 +379,8 @@ def box_center(outline: BallOutline) -> Point:
     places = [side.start for side in outline.segments]
     arcs = [side for side in outline.segments if isinstance(side, ArcSide)]
     for side, way in product(arcs, ((1, 0), (-1, 0), (0, 1), (0, -1))):
-        if not side.within(exact_point(*way)) < 0:
+        if not side.measure_within(make_exact_point(*way)) < 0:
             (x, y), radius = side.center, side.radius
             places.append((x + way[0] * radius, y + way[1] * radius))
     xs, ys = zip(*places, strict=True)
-    return (least(xs) + largest(xs)) / 2, (least(ys) + largest(ys)) / 2
+    return (find_least(xs) + find_largest(xs)) / 2, (find_least(ys) + find_largest(ys)) / 2

@@ -40,13 +40,13 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
+    compute_dot_product,
+    compute_square_root,
     cross,
-    dot,
-    largest,
-    least,
-    minus,
-    root,
-    turned,
+    find_largest,
+    find_least,
+    subtract,
+    turn_vector,
 )
 from workhold.verification.tolerances import (
     FIGURE_AGREEMENT,
@@ -56,25 +56,25 @@ from workhold.verification.tolerances import (
     LEAST_SPAN,
     ROUNDING,
     Finding,
+    judge_slack,
     number,
-    rule,
 )
 
 __all__ = [
     "Balance",
     "BallContact",
     "BallPose",
-    "closure_findings",
-    "contact_system",
-    "every_outline",
-    "inner",
-    "inverted",
-    "met_by",
-    "minors",
-    "parts_spared",
-    "span",
-    "standoff",
-    "wrench_radius",
+    "judge_closure",
+    "evaluate_contact_system",
+    "make_joint_outline",
+    "compute_inner_product",
+    "invert_matrix",
+    "select_outline_for",
+    "compute_minors",
+    "bound_relative_error",
+    "measure_wrench_span",
+    "compute_standoff",
+    "compute_wrench_radius",
 ]
 
 
@@ -90,14 +90,14 @@ class BallPose:
     sine: arb
 
     @classmethod
-    def of(cls, theta: arb, x: arb, y: arb, *travels: arb) -> BallPose:
-        """The pose with its cosine and sine."""
+    def from_turn_and_place(cls, theta: arb, x: arb, y: arb, *travels: arb) -> BallPose:
+        """Return the pose with its cosine and sine."""
         return cls(theta, x, y, travels, theta.cos(), theta.sin())
 
     @classmethod
-    def written(cls, pose: Pose) -> BallPose:
-        """The pose of a file as the numbers that it is, without any travel."""
-        return cls.of(arb(pose.theta_deg) * arb.pi() / 180, arb(pose.x), arb(pose.y), arb(0))
+    def from_written(cls, pose: Pose) -> BallPose:
+        """Return the pose of a file as the numbers that it is, without any travel."""
+        return cls.from_turn_and_place(arb(pose.theta_deg) * arb.pi() / 180, arb(pose.x), arb(pose.y), arb(0))
 
 
 @frozen(eq=False)
@@ -134,61 +134,61 @@ class BallContact:
         """The length of a straight side, or the radius of an arc, in mm."""
         return self.side.length if isinstance(self.side, LineSide) else self.side.radius
 
-    def outward(self, pose: BallPose) -> Point:
-        """The outward unit normal at the contact, in the workpiece's frame."""
-        return self.side.outward(self.in_part(pose))
+    def compute_outward_normal(self, pose: BallPose) -> Point:
+        """Return the outward unit normal at the contact, in the workpiece's frame."""
+        return self.side.compute_outward_normal(self.compute_center_in_part(pose))
 
     def from_origin(self, pose: BallPose) -> Point:
-        """Vector in the toolkit's frame from the workpiece's origin to the peg's centre, in mm."""
+        """Return the vector in the toolkit's frame from the workpiece's origin to the peg's centre, in mm."""
         x, y = self.place(pose)
         return x - pose.x, y - pose.y
 
     def place(self, pose: BallPose) -> Point:
-        """The peg's centre in the toolkit's frame, in mm."""
+        """Return the peg's centre in the toolkit's frame, in mm."""
         travelled = pose.travels[self.travel]
         return self.hole[0] + self.way[0] * travelled, self.hole[1] + self.way[1] * travelled
 
-    def in_part(self, pose: BallPose) -> Point:
-        """The peg's centre in the workpiece's frame, in mm."""
-        return turned(self.from_origin(pose), pose.cosine, -pose.sine)
+    def compute_center_in_part(self, pose: BallPose) -> Point:
+        """Return the peg's centre in the workpiece's frame, in mm."""
+        return turn_vector(self.from_origin(pose), pose.cosine, -pose.sine)
 
-    def equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
-        """Value of the contact equation, and its derivatives by theta, x, y and its travel."""
+    def evaluate_equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
+        """Return the value of the contact equation, and its derivatives by theta, x, y and its travel."""
         u, side = self.from_origin(pose), self.side
         if isinstance(side, LineSide):
-            n = turned(side.normal, pose.cosine, pose.sine)
-            value = dot(n, u) - side.level - self.radius
-            return value, [cross(n, u), -n[0], -n[1], dot(self.way, n)]
-        c = turned(side.center, pose.cosine, pose.sine)
-        w = minus(u, c)
-        value = (dot(w, w) - side.reach(self.radius) ** 2) / 2
-        return value, [cross(w, c), -w[0], -w[1], dot(self.way, w)]
+            n = turn_vector(side.normal, pose.cosine, pose.sine)
+            value = compute_dot_product(n, u) - side.level - self.radius
+            return value, [cross(n, u), -n[0], -n[1], compute_dot_product(self.way, n)]
+        c = turn_vector(side.center, pose.cosine, pose.sine)
+        w = subtract(u, c)
+        value = (compute_dot_product(w, w) - side.compute_offset_radius(self.radius) ** 2) / 2
+        return value, [cross(w, c), -w[0], -w[1], compute_dot_product(self.way, w)]
 
 
-def standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
-    """Distance in mm from a side to the centre of a peg that touches it, round or with a flat."""
+def compute_standoff(side: Side, peg_radius: float, flat: Flat | None) -> arb:
+    """Return the distance in mm from a side to the centre of a peg that touches it, round or with a flat."""
     return arb(flat.distance if flat is not None and isinstance(side, LineSide) else peg_radius)
 
 
-def contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
-    """Values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of the unknowns."""
-    pose = BallPose.of(*unknowns.entries())
+def evaluate_contact_system(contacts: Sequence[BallContact], unknowns: arb_mat) -> tuple[arb_mat, arb_mat]:
+    """Return the values (N x 1) and Jacobian (N x N) of the contact equations on a box (N x 1) of the unknowns."""
+    pose = BallPose.from_turn_and_place(*unknowns.entries())
     values, rows = [], []
     for contact in contacts:
-        value, (*slopes, along) = contact.equation(pose)
+        value, (*slopes, along) = contact.evaluate_equation(pose)
         values.append(value)
         rows.append([*slopes, *(along if k == contact.travel else arb(0) for k in range(len(pose.travels)))])
     return arb_mat(len(values), 1, values), arb_mat(rows)
 
 
-def minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
-    """The null vector of four wrenches in balls, in mm: (-1)^i det of the wrenches other than i."""
+def compute_minors(points: Sequence[Point], normals: Sequence[Point]) -> list[arb]:
+    """Return the null vector of four wrenches in balls, in mm: (-1)^i det of the wrenches other than i."""
     wrenches = [(*n, cross(q, n)) for q, n in zip(points, normals, strict=True)]
     return [(-1) ** i * arb_mat([*wrenches[:i], *wrenches[i + 1 :]]).det() for i in range(4)]
 
 
-def span(vector: Sequence[arb], wrench_length: float) -> arb:
-    """How far wrenches are from lying in one plane: the sum of the sizes of their minors.
+def measure_wrench_span(vector: Sequence[arb], wrench_length: float) -> arb:
+    """Return how far wrenches are from lying in one plane: the sum of the sizes of their minors.
 
     Moments are in parts of L, in mm.
     """
@@ -202,7 +202,7 @@ class Balance:
     Parameters
     ----------
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
-    vector : the null vector of the wrenches, not scaled, see :func:`minors`.
+    vector : the null vector of the wrenches, not scaled, see :func:`compute_minors`.
     shares : the null vector scaled to sum 1; no numbers where the sum may be 0.
     clamp : the force that what moves passes on in the direction in which it clamps, for these shares.
     ways : those of the pegs in the workpiece's frame.
@@ -216,16 +216,18 @@ class Balance:
     ways: tuple[Point, ...]
 
     @classmethod
-    def of(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
-        """The balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
-        points = tuple(contact.in_part(pose) for contact in contacts)
-        normals = tuple(contact.outward(pose) for contact in contacts)
-        vector = tuple(minors(points, normals))
+    def from_contacts(cls, contacts: Sequence[BallContact], pose: BallPose, clamping: int) -> Balance:
+        """Return the balance of four contacts; ``clamping`` is 1 where less travel clamps, -1 where more does."""
+        points = tuple(contact.compute_center_in_part(pose) for contact in contacts)
+        normals = tuple(contact.compute_outward_normal(pose) for contact in contacts)
+        vector = tuple(compute_minors(points, normals))
         total = sum(vector, arb(0))
         shares = tuple(entry / total for entry in vector)
         # A peg pushes along -n, and clamps against its way.
-        ways = tuple(turned(contact.way, pose.cosine, -pose.sine) for contact in contacts)
-        push = sum((s * dot(way, n) for s, way, n in zip(shares, ways, normals, strict=True)), arb(0))
+        ways = tuple(turn_vector(contact.way, pose.cosine, -pose.sine) for contact in contacts)
+        push = sum(
+            (s * compute_dot_product(way, n) for s, way, n in zip(shares, ways, normals, strict=True)), arb(0)
+        )
         return cls(points, normals, vector, shares, clamping * push, ways)
 
     @property
@@ -235,14 +237,17 @@ class Balance:
 
     @property
     def margin(self) -> arb:
-        return least(self.shares)
+        return find_least(self.shares)
 
     @cached_property
     def inverse(self) -> list[list[arb]] | None:
         """The inverse of the matrix of rows (n, q x n, n . w), see ``figures``; None if uncertain."""
         contacts = zip(self.points, self.normals, self.ways, strict=True)
-        return inverted(
-            [[*normal, cross(point, normal), dot(way, normal)] for point, normal, way in contacts]
+        return invert_matrix(
+            [
+                [*normal, cross(point, normal), compute_dot_product(way, normal)]
+                for point, normal, way in contacts
+            ]
         )
 
     @property
@@ -250,29 +255,29 @@ class Balance:
         """Force of each peg per unit of the load (g_x, g_y, moment), in three rows; see ``inverse``."""
         return [] if self.inverse is None else self.inverse[:3]
 
-    def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
-        """The component of forces along those of what moves: the part that locking it takes up."""
+    def project_on_closing(self, forces: Sequence[arb]) -> list[arb]:
+        """Return the component of forces along those of what moves: the part that locking it takes up."""
         own = self.forces
-        share = inner(forces, own) / inner(own, own)
+        share = compute_inner_product(forces, own) / compute_inner_product(own, own)
         return [share * force for force in own]
 
 
-def parts_spared(forces: Sequence[arb]) -> arb:
-    """The relative error to which forces and figures of the file agree with the derived ones.
+def bound_relative_error(forces: Sequence[arb]) -> arb:
+    """Return the relative error to which forces and figures of the file agree with the derived ones.
 
     An error of the pose moves a fixture by as many times more as its forces exceed the clamping force, and
     its forces by that factor again.
     """
-    amplification = largest(forces)
+    amplification = find_largest(forces)
     return FIGURE_AGREEMENT + ROUNDING * amplification * amplification
 
 
-def inner(a: Sequence[arb], b: Sequence[arb]) -> arb:
+def compute_inner_product(a: Sequence[arb], b: Sequence[arb]) -> arb:
     return sum((p * q for p, q in zip(a, b, strict=True)), arb(0))
 
 
-def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
-    """The inverse of a square matrix; None where there may be none."""
+def invert_matrix(rows: list[list[arb]]) -> list[list[arb]] | None:
+    """Return the inverse of a square matrix; None where there may be none."""
     try:
         inverse: list[list[arb]] = arb_mat(rows).inv().tolist()
     except ZeroDivisionError:
@@ -280,16 +285,16 @@ def inverted(rows: list[list[arb]]) -> list[list[arb]] | None:
     return inverse
 
 
-def closure_findings(
+def judge_closure(
     balance: Balance, wrench_length: float, names: Sequence[str], slack_words: str
 ) -> Iterator[Finding]:
-    """Whether four contacts of some names close, and whether what moves clamps.
+    """Check whether four contacts of some names close, and whether what moves clamps.
 
     ``wrench_length`` is L, half the diameter of the peg-centre locus, in mm, and ``slack_words`` what is
     wrong where the clamping force is none.
     """
-    vector, spanned = balance.vector, span(balance.vector, wrench_length)
-    yield from rule(
+    vector, spanned = balance.vector, measure_wrench_span(balance.vector, wrench_length)
+    yield from judge_slack(
         spanned - LEAST_SPAN,
         f"the contacts do not hold the part: their wrenches span only {number(spanned)}",
     )
@@ -299,12 +304,12 @@ def closure_findings(
         yield Finding(opposed, "the contacts do not hold the part: their forces do not close")
         return
     for name, share in zip(names, balance.shares, strict=True):
-        yield from rule(
+        yield from judge_slack(
             share - LEAST_SHARE,
             f"the contacts do not hold the part: the share of {name} in the closure is {number(share)}",
             f"the share of {name} in the closure is exactly at its limit",
         )
-    yield from rule(
+    yield from judge_slack(
         balance.clamp - LEAST_CLAMPING,
         f"{slack_words}: the clamping force is {number(balance.clamp)}",
         "the clamping force is exactly at its limit",
@@ -314,10 +319,11 @@ def closure_findings(
 Wrench = tuple[arb, arb, arb]
 
 
-def wrench_radius(
+def compute_wrench_radius(
     center: Point, length: float, points: Sequence[Point], normals: Sequence[Point]
 ) -> arb | None:
-    """The wrench radius of contacts about a centre, L in mm; None where all wrenches may be on one line.
+    """Return the wrench radius of contacts about a centre, L in mm; None where all wrenches may be on one
+    line.
 
     The nearest plane through three wrenches counts that has all others on one side. Several may lie in one
     plane, or two be equal, to ``FLAT``; where that is in doubt the ball holds both cases.
@@ -327,35 +333,38 @@ def wrench_radius(
     wrenches = [(*normal, cross(arm, normal) / length) for arm, normal in zip(arms, normals, strict=True)]
     for corners in combinations(range(len(wrenches)), 3):
         a, b, c = (wrenches[k] for k in corners)
-        across = vector_product(difference(b, a), difference(c, a))
-        size = root(inner(across, across))
+        across = compute_vector_product(subtract_wrenches(b, a), subtract_wrenches(c, a))
+        size = compute_square_root(compute_inner_product(across, across))
         if size < FLAT or not size > 0:
             continue
         others = (wrench for k, wrench in enumerate(wrenches) if k not in corners)
-        sides = [inner(across, difference(wrench, a)) / size for wrench in others]
+        sides = [compute_inner_product(across, subtract_wrenches(wrench, a)) / size for wrench in others]
         if any(side > FLAT for side in sides) and any(side < -FLAT for side in sides):
             continue
-        height = abs(inner(across, a)) / size
+        height = abs(compute_inner_product(across, a)) / size
         sure = all(side > -FLAT for side in sides) or all(side < FLAT for side in sides)
         found = height if nearest is None else nearest.min(height)
         nearest = found if sure or nearest is None else found.union(nearest)
     return nearest
 
 
-def vector_product(a: Wrench, b: Wrench) -> Wrench:
+def compute_vector_product(a: Wrench, b: Wrench) -> Wrench:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def difference(a: Wrench, b: Wrench) -> Wrench:
+def subtract_wrenches(a: Wrench, b: Wrench) -> Wrench:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
-def every_outline(workpiece: Workpiece) -> BallOutline:
-    """The outline of a workpiece at the precision in force, with the faces of all outlines in its tables."""
-    whole = BallOutline.of(workpiece)
+def make_joint_outline(workpiece: Workpiece) -> BallOutline:
+    """Return the outline of a workpiece at the precision in force, with the faces of all outlines in its tables."""
+    whole = BallOutline.from_workpiece(workpiece)
     if not workpiece.outlines:
         return whole
-    own = {"": whole, **{role: BallOutline.of(*workpiece.outline_of(role)) for role, _ in workpiece.outlines}}
+    own = {
+        "": whole,
+        **{role: BallOutline.from_workpiece(*workpiece.outline_of(role)) for role, _ in workpiece.outlines},
+    }
     tables: dict[str, Any] = {
         name: {face: value for one in own.values() for face, value in getattr(one, name).items()}
         for name in ("faces", "others", "neighbours", "turns")
@@ -363,6 +372,6 @@ def every_outline(workpiece: Workpiece) -> BallOutline:
     return evolve(whole, **tables, own=own)
 
 
-def met_by(outline: BallOutline, carrier: str) -> BallOutline:
-    """What the pegs of a carrier of a name keep from; a clamp's name ends with its direction."""
+def select_outline_for(outline: BallOutline, carrier: str) -> BallOutline:
+    """Return what the pegs of a carrier of a name keep from; a clamp's name ends with its direction."""
     return outline.own.get(carrier.split(" ")[0], outline.own[""]) if outline.own else outline

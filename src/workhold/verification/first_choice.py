@@ -31,7 +31,7 @@ from workhold.verification.tolerances import (
     WRITTEN_ANGLE,
 )
 
-__all__ = ["EffectiveJudge", "angle_class"]
+__all__ = ["EffectiveJudge", "classify_angle"]
 
 # What a number is at least and at most.
 Range = tuple[float, float]
@@ -52,34 +52,34 @@ class EffectiveJudge:
     query: Query
     least: float | None
 
-    def error(self, fixture: Fixture) -> tuple[int, int]:
-        """Effective error in whole billionths of a mm, at least and at most."""
+    def compute_effective_error(self, fixture: Fixture) -> tuple[int, int]:
+        """Return the effective error in whole billionths of a mm, at least and at most."""
         written = fixture.quality.get("location_error", inf)
         low, high = written * (1 - DIGITS), written * (1 + DIGITS)
-        for times, (surely, perhaps) in self.factors(fixture):
+        for times, (surely, perhaps) in self.list_factors(fixture):
             low, high = low * (times if surely else 1.0), high * (times if perhaps else 1.0)
         return floor(low * BILLION + 0.5 - HALF), floor(high * BILLION + 0.5 + HALF)
 
-    def steps(self, fixture: Fixture) -> Range:
-        """How many steps its effective error is above the least, at least and at most."""
+    def count_error_steps(self, fixture: Fixture) -> Range:
+        """Return how many steps its effective error is above the least, at least and at most."""
         least = round((self.least or 0.0) * BILLION)
-        low, high = (steps_above(end, least) for end in self.error(fixture))
+        low, high = (count_steps_above(end, least) for end in self.compute_effective_error(fixture))
         return low, high
 
-    def factors(self, fixture: Fixture) -> Iterator[tuple[float, tuple[bool, bool]]]:
-        """Each factor, with whether it surely holds of a fixture, and whether it may."""
-        low, high = angle_class(fixture.pose.theta_deg)
+    def list_factors(self, fixture: Fixture) -> Iterator[tuple[float, tuple[bool, bool]]]:
+        """Yield each factor, with whether it surely holds of a fixture, and whether it may."""
+        low, high = classify_angle(fixture.pose.theta_deg)
         yield TURNED, (low == high == 1, 1 in (low, high))
         yield ASLANT, (low == high == 2, high == 2)
         yield AT_AN_END, self.touches_an_end(fixture)
-        pegs = [(self.carrier(peg).contact is CLAMP_TIP, self.is_inside(peg)) for peg in fixture.pegs]
+        pegs = [(self.find_carrier(peg).contact is CLAMP_TIP, self.is_inside(peg)) for peg in fixture.pegs]
         for times, wanted in ((CLAMP_IN_HOLE, True), (DOWEL_IN_HOLE, False)):
             holds = any(inside for is_clamp, inside in pegs if is_clamp == wanted)
             yield times, (holds, holds)
         yield HANGING, self.hangs_over(fixture)
 
-    def carrier(self, peg: Peg) -> Carrier:
-        return self.query.toolkit.carrier(peg.carrier)
+    def find_carrier(self, peg: Peg) -> Carrier:
+        return self.query.toolkit.find_carrier(peg.carrier)
 
     @cached_property
     def holes(self) -> frozenset[int]:
@@ -91,18 +91,18 @@ class EffectiveJudge:
         return frozenset() if opens or not left else part.inside
 
     def is_inside(self, peg: Peg) -> bool:
-        """Whether a peg stands in a hole that nobody asked for."""
-        return peg.face in self.holes and self.carrier(peg).contact.is_placed
+        """Return whether a peg stands in a hole that nobody asked for."""
+        return peg.face in self.holes and self.find_carrier(peg).contact.is_placed
 
     def touches_an_end(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Whether a contact is near the end of a straight face, surely and perhaps."""
+        """Return whether a contact is near the end of a straight face, surely and perhaps."""
         faces = {face.number: face.segment for face in self.query.workpiece.numbered.faces}
         surely = perhaps = False
         for peg in fixture.pegs:
-            one, side = self.carrier(peg), faces.get(peg.face)
+            one, side = self.find_carrier(peg), faces.get(peg.face)
             if not (one.contact.is_placed and isinstance(side, Line)):
                 continue
-            x, y = seen(fixture, peg.x, peg.y)
+            x, y = map_to_part(fixture, peg.x, peg.y)
             (ax, ay), (bx, by) = side.start, side.end
             long = hypot(bx - ax, by - ay)
             away = ((x - ax) * (bx - ax) + (y - ay) * (by - ay)) / long
@@ -111,7 +111,7 @@ class EffectiveJudge:
         return surely, perhaps
 
     def hangs_over(self, fixture: Fixture) -> tuple[bool, bool]:
-        """Whether the part hangs over the plate wherever all stands on it: surely, perhaps."""
+        """Return whether the part hangs over the plate wherever all stands on it: surely, perhaps."""
         surely = perhaps = False
         for axis in (0, 1):
             one, other = (self.is_over(fixture, axis, spare) for spare in (2 * AGREEMENT, 0.0))
@@ -119,7 +119,7 @@ class EffectiveJudge:
         return surely, perhaps
 
     def is_over(self, fixture: Fixture, axis: int, spare: float) -> bool:
-        """Whether the part reaches beyond the plates by more than a length, wherever all stands."""
+        """Return whether the part reaches beyond the plates by more than a length, wherever all stands."""
         toolkit, plates = self.query.toolkit, self.query.toolkit.plates
         counts = [(plate.columns, plate.rows)[axis] for plate in plates]
         if None in counts:
@@ -128,36 +128,38 @@ class EffectiveJudge:
         first = [plate.place(0, 0, travel)[axis] for plate in plates]
         low = min(first) - pitch / 2
         high = max(at + ((count or 0) - 0.5) * pitch for at, count in zip(first, counts, strict=True))
-        least, most = self.extent(fixture, axis)
+        least, most = self.compute_extent(fixture, axis)
         has_wall = any(one.is_wall for one in toolkit.carriers)
         shifts = [0]
         is_moved = any(one.travel is not None and one.is_along_x == (axis == 0) for one in plates)
         if not is_moved and not (axis == 1 and has_wall):
-            pegs = [peg for peg in fixture.pegs if self.carrier(peg).counted[axis]]
+            pegs = [peg for peg in fixture.pegs if self.find_carrier(peg).counted[axis]]
             used = [(peg.column, peg.row)[axis] for peg in pegs]
-            stood_on = [toolkit.carrier(self.carrier(peg).stands_on) for peg in pegs]
+            stood_on = [toolkit.find_carrier(self.find_carrier(peg).stands_on) for peg in pegs]
             ends = [(plate.columns, plate.rows)[axis] or 0 for plate in stood_on]
             room = min(end - 1 - hole for end, hole in zip(ends, used, strict=True))
             shifts = list(range(-min(used), room + 1))
         below = -inf if axis == 1 and has_wall else low - spare
         return not any(least + k * pitch >= below and most + k * pitch <= high + spare for k in shifts)
 
-    def extent(self, fixture: Fixture, axis: int) -> Range:
-        """The least and the largest place that the part reaches along x or y of the toolkit."""
+    def compute_extent(self, fixture: Fixture, axis: int) -> Range:
+        """Return the least and the largest place that the part reaches along x or y of the toolkit."""
         part, turn = self.query.workpiece, radians(fixture.pose.theta_deg)
         values = list[float]()
         for loop in part.loops[: part.pieces]:
             corners = loop.tolist()
             for (x, y, bulge), (u, v, _) in zip(corners, [*corners[1:], corners[0]], strict=True):
-                a, b = placed(fixture, turn, x, y), placed(fixture, turn, u, v)
+                a, b = place_point(fixture, turn, x, y), place_point(fixture, turn, u, v)
                 values.append(a[axis])
                 if bulge > 0:
-                    values += arc_extremes(a, b, bulge, axis)
+                    values += find_arc_extremes(a, b, bulge, axis)
         return min(values), max(values)
 
 
-def arc_extremes(a: tuple[float, float], b: tuple[float, float], bulge: float, axis: int) -> Iterator[float]:
-    """Where a convex arc from a to b reaches farthest along x or y."""
+def find_arc_extremes(
+    a: tuple[float, float], b: tuple[float, float], bulge: float, axis: int
+) -> Iterator[float]:
+    """Yield where a convex arc from a to b reaches farthest along x or y."""
     chord = hypot(b[0] - a[0], b[1] - a[1])
     radius = chord * (1 + bulge * bulge) / (4 * bulge)
     # From the middle of the chord to the centre, on the left of the way.
@@ -171,22 +173,22 @@ def arc_extremes(a: tuple[float, float], b: tuple[float, float], bulge: float, a
             yield (x, y)[axis] + sign * radius
 
 
-def placed(fixture: Fixture, turn: float, x: float, y: float) -> tuple[float, float]:
-    """A point of the part as it lies."""
+def place_point(fixture: Fixture, turn: float, x: float, y: float) -> tuple[float, float]:
+    """Return a point of the part as it lies."""
     return (
         fixture.pose.x + cos(turn) * x - sin(turn) * y,
         fixture.pose.y + sin(turn) * x + cos(turn) * y,
     )
 
 
-def seen(fixture: Fixture, x: float, y: float) -> tuple[float, float]:
-    """A place on the toolkit in the part's own coordinates."""
+def map_to_part(fixture: Fixture, x: float, y: float) -> tuple[float, float]:
+    """Return a place on the toolkit in the part's own coordinates."""
     turn, x, y = radians(fixture.pose.theta_deg), x - fixture.pose.x, y - fixture.pose.y
     return cos(turn) * x + sin(turn) * y, cos(turn) * y - sin(turn) * x
 
 
-def angle_class(degrees: float) -> tuple[int, int]:
-    """0 at 0 degrees, 1 at 90, 180 and 270, 2 elsewhere: at least and at most, near an edge of the rule."""
+def classify_angle(degrees: float) -> tuple[int, int]:
+    """Return 0 at 0 degrees, 1 at 90, 180 and 270, 2 elsewhere: at least and at most, near an edge of the rule."""
     nearest = round(degrees / 90.0)
     off, square = abs(degrees - 90.0 * nearest), 0 if nearest % 4 == 0 else 1
     if off > 2 * WRITTEN_ANGLE:
@@ -194,8 +196,8 @@ def angle_class(degrees: float) -> tuple[int, int]:
     return square, 2 if off > WRITTEN_ANGLE / 2 else square
 
 
-def steps_above(error: int, least: int) -> int:
-    """The number of j from 1 on with error >= 1.1^j least, counted in whole numbers."""
+def count_steps_above(error: int, least: int) -> int:
+    """Return the number of j from 1 on with error >= 1.1^j least, counted in whole numbers."""
     up, down = STEP
     steps, left, right = 0, error * down, max(least, 1) * up
     while left >= right:

@@ -26,11 +26,11 @@ from workhold.model.requirements import Load
 from workhold.verification.jaw_forces import (
     HeldBetweenJaws,
     UnsettledError,
-    hull_of,
-    pressures_of,
-    resultants_of,
+    compute_resultant_points,
+    find_hull_corners,
+    list_extreme_pressures,
 )
-from workhold.verification.jaw_program import program_force_faults
+from workhold.verification.jaw_program import find_program_force_faults
 from workhold.verification.tolerances import AGREEMENT
 from workhold.verification.tool_walk import Element, walk_of
 
@@ -78,8 +78,8 @@ class JawJudge:
         known = self.query.part_height
         return UNKNOWN_HEIGHT if known is None else known
 
-    def faults(self, fixture: Fixture, place: int) -> Iterator[str]:
-        """What is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
+    def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
+        """Yield what is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
         hold = fixture.hold
         if hold is None:
             yield "it is not held by flat jaws"
@@ -90,21 +90,21 @@ class JawJudge:
         if hold.stop not in self.jaws.stops:
             yield f"the work stop is {hold.stop or 'missing'}, and none of those asked for is there"
             return
-        yield from self.placed_faults(fixture, hold)
+        yield from self.find_placement_faults(fixture, hold)
         key = round(fixture.pose.theta_deg * 1e4), round(hold.parallels, 6), hold.stop
         if (first := self.seen.setdefault(key, place)) != place:
             yield f"it is the same as fixture {first + 1}"
 
     def order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
-        """A fault for a fixture that what comes first puts before the one before it."""
-        rows = [first_of_order(one.hold) for one in fixtures if one.hold is not None]
+        """Yield a fault for a fixture that what comes first puts before the one before it."""
+        rows = [rank_cautions(one.hold) for one in fixtures if one.hold is not None]
         for place, (before, after) in enumerate(pairwise(rows), 2):
             if after < before:
                 yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"
                 return
 
-    def placed_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
-        outline, first = self.query.workpiece.outline_of(self.jaws.role(hold.parallels))
+    def find_placement_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
+        outline, first = self.query.workpiece.outline_of(self.jaws.name_outline_role(hold.parallels))
         segments = [fixture.pose.carry(segment) for segment in outline.segments[: outline.outer_count]]
         face_of = {number: first + face.number for face in outline.outer_faces for number in face.segments}
         solid = outline.solid
@@ -112,7 +112,7 @@ class JawJudge:
             number: (0.0, self.height) if solid is None else solid.bands[number]
             for number in range(len(segments))
         }
-        boxes = np.array([box_of(segment) for segment in segments])
+        boxes = np.array([compute_segment_box(segment) for segment in segments])
         (low_x, low_y), (high_x, high_y) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
         if abs(low_y) > AGREEMENT or abs(high_y - hold.opening) > AGREEMENT:
             yield f"the part reaches from y = {low_y:.9g} to {high_y:.9g}, not from 0 to {hold.opening:.9g}"
@@ -120,8 +120,8 @@ class JawJudge:
         most = self.jaws.max_opening
         if most is not None and hold.opening > most + AGREEMENT:
             yield f"the jaws would open {hold.opening:.9g} mm, and they open {most:g}"
-        top = self.jaws.top(hold.parallels)
-        lies = [self.lying(segments, bands, face_of, level) for level in (0.0, float(high_y))]
+        top = self.jaws.compute_top(hold.parallels)
+        lies = [self.find_lying_on_jaw(segments, bands, face_of, level) for level in (0.0, float(high_y))]
         if len({(round(one.low, 5), round(one.high, 5)) for one in lies[0]}) == 1 and all(
             one.low == one.high for one in lies[0]
         ):
@@ -130,12 +130,12 @@ class JawJudge:
                 yield "no straight side of the part's hull lies on the fixed jaw"
                 return
         known = self.query.part_height is not None
-        gripped = [grip_of(some, top, self.jaws.least_grip if known else 0.0) for some in lies]
+        gripped = [find_grip(some, top, self.jaws.least_grip if known else 0.0) for some in lies]
         if top < self.jaws.least_grip or not all(gripped):
             yield "the jaws do not grip the part high enough"
             return
         yield from self.shift_faults(hold, gripped, (float(low_x), float(high_x)))
-        derived = [patch_on(some, self.jaws.width) for some in gripped]
+        derived = [make_patch(some, self.jaws.width) for some in gripped]
         for name, mine, theirs in zip(("fixed", "moving"), derived, (hold.fixed, hold.moving), strict=True):
             if not are_alike(mine.rectangles, theirs.rectangles):
                 yield f"what the {name} jaw touches is {list(mine.rectangles)}, not {list(theirs.rectangles)}"
@@ -151,27 +151,27 @@ class JawJudge:
             (theta - low + 1e-6) % 360 <= high - low + 2e-6 for low, high in asked.angles
         ):
             yield f"the part is turned by {theta:g} degrees, which is not asked for"
-        yield from self.program_faults(fixture, hold)
-        yield from self.grip_faults(fixture, hold, derived[0], derived[1], segments)
+        yield from self.find_program_faults(fixture, hold)
+        yield from self.find_grip_faults(fixture, hold, derived[0], derived[1], segments)
 
-    def program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
-        """Whether the program's tools keep clear of both jaws: of their sides, and not inside."""
+    def find_program_faults(self, fixture: Fixture, hold: JawHold) -> Iterator[str]:
+        """Check whether the program's tools keep clear of both jaws: of their sides, and not inside."""
         program, jaws = self.query.program, self.jaws
         if program is None:
             return
-        walk, top, turn = walk_of(program), jaws.top(hold.parallels), radians(-fixture.pose.theta_deg)
+        walk, top, turn = walk_of(program), jaws.compute_top(hold.parallels), radians(-fixture.pose.theta_deg)
         deep = ENDLESS if jaws.thickness is None else jaws.thickness
         at = fixture.pose.apply(0.0, 0.0)
 
         def drawn(x: float, y: float) -> tuple[float, float]:
-            """A place beside the jaws, as the part was drawn."""
+            """Return a place beside the jaws, as the part was drawn."""
             off = complex(x - float(at[0]), y - float(at[1])) * complex(cos(turn), sin(turn))
             return off.real, off.imag
 
         for name, low, high in (("fixed", -deep, 0.0), ("moving", hold.opening, hold.opening + deep)):
             ring = [drawn(*place) for place in ((0, low), (jaws.width, low), (jaws.width, high), (0, high))]
             near = [
-                walk.nearest(Element(name, name, start, end, 0.0, top))
+                walk.find_nearest(Element(name, name, start, end, 0.0, top))
                 for start, end in zip(ring, [*ring[1:], ring[0]], strict=True)
             ]
             for one in near:
@@ -193,21 +193,21 @@ class JawJudge:
                         return
 
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
-        """Whether the hull of an outline has a straight piece: by far sides of a fine fan of directions."""
-        points = np.array([point for one in segments for point in samples(one)])
-        hull = np.array(hull_of([(float(x), float(y)) for x, y in points.round(9)]))
+        """Return whether the hull of an outline has a straight piece: by far sides of a fine fan of directions."""
+        points = np.array([point for one in segments for point in sample_segment(one)])
+        hull = np.array(find_hull_corners([(float(x), float(y)) for x, y in points.round(9)]))
         sides = np.hypot(*(np.roll(hull, -1, axis=0) - hull).T)
         arcs = [one.radius for one in segments if isinstance(one, Arc)]
         return bool(sides.max() > 2 * max(arcs, default=0.0) * sin(pi / SAMPLES) + 1e-4)
 
-    def lying(
+    def find_lying_on_jaw(
         self,
         segments: Sequence[Segment],
         bands: dict[int, tuple[float, float] | None],
         face_of: dict[int, int],
         level: float,
     ) -> list[Lies]:
-        """What of an outline lies on a jaw at a y."""
+        """Return what of an outline lies on a jaw at a y."""
         out = list[Lies]()
         ends = list[tuple[float, int]]()
         for number, one in enumerate(segments):
@@ -240,7 +240,7 @@ class JawJudge:
     def shift_faults(
         self, hold: JawHold, gripped: Sequence[Sequence[Lies]], ends: tuple[float, float]
     ) -> Iterator[str]:
-        """Whether the part lies along the jaws where stop or middle say."""
+        """Check whether the part lies along the jaws where stop or middle say."""
         jaws = self.jaws
         if hold.stop == "left":
             off = ends[0] - jaws.stop_offset
@@ -255,23 +255,23 @@ class JawJudge:
         if abs(off) > AGREEMENT:
             yield f"the part lies {off:.9g} mm along the jaws from where {'the stop' if hold.stop else 'the middle'} is"
 
-    def grip_faults(
+    def find_grip_faults(
         self, fixture: Fixture, hold: JawHold, fixed: Patch, moving: Patch, segments: Sequence[Segment]
     ) -> Iterator[str]:
-        """Whether the push clamps, and whether figures are those that follow."""
-        corners = [np.array(pressures_of(patch)[1]) for patch in (fixed, moving)]
-        if apart(*corners) > EITHER:
+        """Check whether the push clamps, and whether figures are those that follow."""
+        corners = [np.array(list_extreme_pressures(patch)[1]) for patch in (fixed, moving)]
+        if measure_hull_distance(*corners) > EITHER:
             yield "the jaws do not press opposite each other: the part turns away as they close"
-        missed = apart(resultants_of(fixed), resultants_of(moving))
+        missed = measure_hull_distance(compute_resultant_points(fixed), compute_resultant_points(moving))
         if (missed <= MISSED) != hold.full_contact and not -EITHER <= missed <= EITHER:
             yield f"{'both jaws press' if missed <= 0 else 'a jaw cannot press'} all over what they touch, not as written"
         is_marked = any(words.startswith("unfit") for words in hold.warnings)
         if is_marked != (fixed.is_corner or moving.is_corner):
             yield "it is unfit where a jaw touches corners alone, and nowhere else"
-        for name, value, derived in self.figures(hold, fixed, moving):
+        for name, value, derived in self.compare_figures(hold, fixed, moving):
             if abs(value - derived) > AGREEMENT * (1 + abs(derived)):
                 yield f"{name} is {value:.9g} in the file and comes to {derived:.9g}"
-        for key, derived in self.ratios(hold):
+        for key, derived in self.derive_ratios(hold):
             written = fixture.quality.get(key, derived)
             if abs(written - derived) > AGREEMENT * (1 + abs(derived)):
                 yield f"{key.replace('_', ' ')} is {written:.9g} in the file and comes to {derived:.9g}"
@@ -285,12 +285,12 @@ class JawJudge:
             return
         points, way = self.stop_points(hold, segments)
         friction = find_friction_coefficient(self.query.friction, "jaw")
-        held = HeldBetweenJaws.of(fixed, moving, hold.opening, friction, points, way)
+        held = HeldBetweenJaws.from_patches(fixed, moving, hold.opening, friction, points, way)
         for number, (load, need) in enumerate(zip(loads, hold.clamp_needed_each, strict=True), 1):
-            yield from self.force_faults(number, load, need, fixture, held)
+            yield from self.find_force_faults(number, load, need, fixture, held)
         program, height = self.query.program, self.query.part_height
         if program is not None and program.forces is not None and height is not None:
-            yield from program_force_faults(
+            yield from find_program_force_faults(
                 program, hold.program_need, fixture, held, height, self.query.safety_factor
             )
         elif hold.program_need is not None:
@@ -300,8 +300,10 @@ class JawJudge:
         if len(worst) == len(each) > 0 and stated is not None and abs(stated - max(worst)) > FORCE_HAIR:
             yield f"the jaw force needed is {stated:.9g} N in the file, and {max(worst):.9g} N are asked for"
 
-    def figures(self, hold: JawHold, fixed: Patch, moving: Patch) -> Iterator[tuple[str, float, float]]:
-        """Figures by name as written and as derived."""
+    def compare_figures(
+        self, hold: JawHold, fixed: Patch, moving: Patch
+    ) -> Iterator[tuple[str, float, float]]:
+        """Yield the figures by name as written and as derived."""
         tops = [min(one[3] for one in patch.rectangles) for patch in (fixed, moving)]
         feet = [max(one[2] for one in patch.rectangles) for patch in (fixed, moving)]
         yield "the grip", hold.grip, max(min(tops) - max(feet), 0.0)
@@ -309,12 +311,12 @@ class JawJudge:
             sum((x1 - x0) * (z1 - z0) for x0, x1, z0, z1 in patch.rectangles) for patch in (fixed, moving)
         ]
         yield "the contact area", hold.contact_area, min(areas)
-        top = self.jaws.top(hold.parallels)
+        top = self.jaws.compute_top(hold.parallels)
         if hold.above is not None and top < inf:
             yield "what stands above the jaws", hold.above, max(self.height - top, 0.0)
 
-    def ratios(self, hold: JawHold) -> Iterator[tuple[str, float]]:
-        """Figures by key that follow from what else is written."""
+    def derive_ratios(self, hold: JawHold) -> Iterator[tuple[str, float]]:
+        """Yield the figures by key that follow from what else is written."""
         yield "grip", hold.grip
         yield "contact_area", hold.contact_area
         needs = [need for need in hold.forces_needed if need is not None]
@@ -328,21 +330,21 @@ class JawJudge:
     def stop_points(
         self, hold: JawHold, segments: Sequence[Segment]
     ) -> tuple[list[tuple[float, float, float]], float]:
-        """Where the work stop may push, and which way along x."""
+        """Return where the work stop may push, and which way along x."""
         if hold.stop is None:
             return [], 1.0
         way = 1.0 if hold.stop == "left" else -1.0
-        reached = [(way * x, x, y) for one in segments for x, y in extremes(one)]
+        reached = [(way * x, x, y) for one in segments for x, y in find_extreme_points(one)]
         least = min(one[0] for one in reached)
         there = [(x, y) for along, x, y in reached if along <= least + ON_JAW]
-        high = min(self.jaws.top(hold.parallels), self.height)
+        high = min(self.jaws.compute_top(hold.parallels), self.height)
         ends = min(there, key=lambda one: one[1]), max(there, key=lambda one: one[1])
         return [(x, y, z) for x, y in ends for z in (0.0, high)], way
 
-    def force_faults(
+    def find_force_faults(
         self, number: int, load: Load, need: float | None, fixture: Fixture, held: HeldBetweenJaws
     ) -> Iterator[str]:
-        """Whether a load asks for the jaw force that is written."""
+        """Check whether a load asks for the jaw force that is written."""
         low, high = load.directions
         turns = (
             [low]
@@ -367,7 +369,9 @@ class JawJudge:
                         load.force * sin(way) * factor,
                         load.upward * factor,
                     )
-                    one = held.force_needed((float(at[0]), float(at[1]), height), force, load.moment * factor)
+                    one = held.compute_needed_force(
+                        (float(at[0]), float(at[1]), height), force, load.moment * factor
+                    )
                     if one is None:
                         if need is not None:
                             yield f"load {number} is held by no jaw force, and {need:.9g} N are written"
@@ -387,8 +391,10 @@ class JawJudge:
 SAMPLES = 256
 
 
-def first_of_order(hold: JawHold) -> tuple[bool, bool, bool]:
-    """Whether a jaw touches corners alone, whether one cannot press all over, and whether the vise is too weak."""
+def rank_cautions(hold: JawHold) -> tuple[bool, bool, bool]:
+    """Return whether a jaw touches corners alone, whether one cannot press all over, and whether the vise is
+    too weak.
+    """
     needs = [need for need in hold.forces_needed if need is not None]
     strong = hold.max_force is None or not needs or max(needs) <= hold.max_force
     return (
@@ -398,16 +404,16 @@ def first_of_order(hold: JawHold) -> tuple[bool, bool, bool]:
     )
 
 
-def samples(segment: Segment) -> list[tuple[float, float]]:
-    """Points along a segment, close together on an arc."""
+def sample_segment(segment: Segment) -> list[tuple[float, float]]:
+    """Return the points along a segment, close together on an arc."""
     if isinstance(segment, Line):
         return [segment.start, segment.end]
     half = segment.half_extent
     return [segment.at(half * (2 * k / SAMPLES - 1)) for k in range(SAMPLES + 1)]
 
 
-def extremes(segment: Segment) -> list[tuple[float, float]]:
-    """The ends of a segment, and of an arc the points farthest along the axes."""
+def find_extreme_points(segment: Segment) -> list[tuple[float, float]]:
+    """Return the ends of a segment, and of an arc the points farthest along the axes."""
     points = [segment.start, segment.end]
     if isinstance(segment, Arc):
         (x, y), radius = segment.center, segment.radius
@@ -418,21 +424,21 @@ def extremes(segment: Segment) -> list[tuple[float, float]]:
     return points
 
 
-def box_of(segment: Segment) -> tuple[float, float, float, float]:
-    """Least x and y, greatest x and y."""
-    x, y = zip(*extremes(segment), strict=True)
+def compute_segment_box(segment: Segment) -> tuple[float, float, float, float]:
+    """Return the least x and y, greatest x and y."""
+    x, y = zip(*find_extreme_points(segment), strict=True)
     return min(x), min(y), max(x), max(y)
 
 
-def grip_of(lies: Sequence[Lies], top: float, least: float) -> list[Lies]:
-    """What of a part a jaw grips: stretches, or else points."""
+def find_grip(lies: Sequence[Lies], top: float, least: float) -> list[Lies]:
+    """Return what of a part a jaw grips: stretches, or else points."""
     cut = [Lies(one.low, one.high, max(one.bottom, 0.0), min(one.top, top), one.face) for one in lies]
     high = [one for one in cut if one.top - one.bottom >= least - 1e-9]
     return [one for one in high if one.high > one.low] or high
 
 
-def patch_on(lies: Sequence[Lies], width: float) -> Patch:
-    """What lies on a jaw of a width, neighbours of one band together."""
+def make_patch(lies: Sequence[Lies], width: float) -> Patch:
+    """Return what lies on a jaw of a width, neighbours of one band together."""
     rows = list[list[float]]()
     for one in sorted(lies, key=lambda one: (one.low, one.bottom, one.top)):
         low, high = max(one.low, 0.0), min(one.high, width)
@@ -460,13 +466,13 @@ def are_alike(mine: Sequence[Rectangle], theirs: Sequence[Rectangle]) -> bool:
     )
 
 
-def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """How far two hulls of points (N, 2) and (M, 2) are apart; below 0 how deep they overlap.
+def measure_hull_distance(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """Return how far two hulls of points (N, 2) and (M, 2) are apart; below 0 how deep they overlap.
 
     It is how far the origin lies outside the hull of all differences.
     """
     differences = [(float(x), float(y)) for x, y in (one[:, None] - other[None]).reshape(-1, 2).round(12)]
-    hull = hull_of(differences)
+    hull = find_hull_corners(differences)
     if len(hull) > 2:
         depth = inf
         for (x, y), (ahead_x, ahead_y) in zip(hull, [*hull[1:], hull[0]], strict=True):
@@ -475,11 +481,11 @@ def apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
         if depth >= 0:
             return -depth
     ends = hull if len(hull) > 1 else [hull[0], hull[0]]
-    return min(distance(p, q) for p, q in zip(ends, [*ends[1:], ends[0]], strict=True))
+    return min(measure_distance_to_origin(p, q) for p, q in zip(ends, [*ends[1:], ends[0]], strict=True))
 
 
-def distance(p: tuple[float, float], q: tuple[float, float]) -> float:
-    """The distance of the origin from a straight piece."""
+def measure_distance_to_origin(p: tuple[float, float], q: tuple[float, float]) -> float:
+    """Return the distance of the origin from a straight piece."""
     dx, dy = q[0] - p[0], q[1] - p[1]
     square = dx * dx + dy * dy
     share = 0.0 if square == 0 else min(max(-(p[0] * dx + p[1] * dy) / square, 0.0), 1.0)

@@ -1,7 +1,7 @@
 """What a program's tools ask of a fixture, by a walk along its moves with bounds.
 
 All moves are walked, not those that remain in the search. What is linear in the load is, for the worst
-direction at a place p of the tip, a function V(p) of the place; see :meth:`ForceWalk.at`. Moves stand in
+direction at a place p of the tip, a function V(p) of the place; see :meth:`ForceWalk.evaluate_at`. Moves stand in
 blocks with a circle around each: V changes by at most F |c| per mm. Blocks that cannot hold the greatest
 value are left. On an arc of the radius r every direction's value has a second derivative of at most
 
@@ -29,13 +29,13 @@ from workhold.model.cutting_forces import CuttingForces
 from workhold.model.fixture import Fixture
 from workhold.model.program import Program
 from workhold.model.query import Query
-from workhold.verification.contacts import Balance, parts_spared
+from workhold.verification.contacts import Balance, bound_relative_error
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
-from workhold.verification.tolerances import Finding, written
-from workhold.verification.tool_walk import ToolWalk, element_name, walk_of
+from workhold.verification.tolerances import Finding, judge_written_number
+from workhold.verification.tool_walk import ToolWalk, make_element_name, walk_of
 
-__all__ = ["ForceWalk", "force_walk_of", "program_force_findings"]
+__all__ = ["ForceWalk", "make_force_walk", "judge_program_forces"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -73,11 +73,11 @@ class ForceWalk:
     far: float
 
     @classmethod
-    def of(cls, program: Program, forces: CuttingForces) -> ForceWalk:
+    def from_program(cls, program: Program, forces: CuttingForces) -> ForceWalk:
         walk, stretches = walk_of(program), forces.stretches
         move = stretches.move
         first = np.arange(0, len(move), RUN)
-        ends = [walk.at(move, share) for share in (stretches.first, stretches.last)]
+        ends = [walk.compute_places_at(move, share) for share in (stretches.first, stretches.last)]
         bulging = np.where(walk.is_round[move], walk.radius[move], 0.0)[:, None]
         middle = np.where(walk.is_round[move, None], walk.center[move], ends[0])
         low = np.minimum(np.minimum(*ends), middle - bulging)
@@ -97,10 +97,11 @@ class ForceWalk:
             float(np.hypot(*far.T).max(initial=0.0)),
         )
 
-    def worst(
+    def find_worst(
         self, a: arb, b: arb, c: arb, known: float = 0.0, line: object = None, tool: object = None
     ) -> arb:
-        """The largest a g_x + b g_y + c m of a tool along the path, moments about the origin, or ``known``.
+        """Return the largest a g_x + b g_y + c m of a tool along the path, moments about the origin, or
+        ``known``.
 
         Parameters
         ----------
@@ -123,7 +124,7 @@ class ForceWalk:
         return arb(found, spare + ROUNDED * size + FINE * found)
 
     def search(self, a: float, b: float, c: float, known: float) -> float:
-        """The largest value over all blocks, the most promising first."""
+        """Return the largest value over all blocks, the most promising first."""
         x, y = a - self.center[:, 1] * c, b + self.center[:, 0] * c
         bounds = self.force * (np.hypot(x, y) + abs(c) * self.reach) + abs(c) * self.torque
         found = known
@@ -135,13 +136,13 @@ class ForceWalk:
         return found
 
     def look(self, rows: IntArray, a: float, b: float, c: float, found: float) -> float:
-        """The largest value on some stretches, to a part of it; ``found`` if that is more."""
+        """Return the largest value on some stretches, to a part of it; ``found`` if that is more."""
         moves, low, high = (
             self.move[rows],
             self.forces.stretches.first[rows],
             self.forces.stretches.last[rows],
         )
-        ends = [self.at(moves, share, a, b, c) for share in (low, high)]
+        ends = [self.evaluate_at(moves, share, a, b, c) for share in (low, high)]
         found = max(found, float(np.maximum(*ends).max(initial=0.0)))
         round_ = self.walk.is_round[moves] & (self.forces.force[moves] > 0.0)
         moves, low, high = moves[round_], low[round_], high[round_]
@@ -156,20 +157,20 @@ class ForceWalk:
             kept = np.maximum(before, after) + bent * turned * turned / 8.0 > found * (1.0 + FINE) + 1e-300
             moves, low, high, before, after = (one[kept] for one in (moves, low, high, before, after))
             middle = (low + high) / 2
-            values = self.at(moves, middle, a, b, c)
+            values = self.evaluate_at(moves, middle, a, b, c)
             found = max(found, float(values.max(initial=0.0)))
             moves = np.concatenate([moves, moves])
             low, high = np.concatenate([low, middle]), np.concatenate([middle, high])
             before, after = np.concatenate([before, values]), np.concatenate([values, after])
         return found
 
-    def at(self, moves: IntArray, share: Array, a: float, b: float, c: float) -> Array:
-        """V (R,) of moves at shares of them: the largest over all directions that count.
+    def evaluate_at(self, moves: IntArray, share: Array, a: float, b: float, c: float) -> Array:
+        """Return v (R,) of moves at shares of them: the largest over all directions that count.
 
         The coefficients of a force at a place p are (a - p_y c, b + p_x c). In the direction nearest to
         theirs it does most. The torque does |c| T more, whichever way round.
         """
-        x, y = self.walk.at(moves, share).T
+        x, y = self.walk.compute_places_at(moves, share).T
         x, y = a - y * c, b + x * c
         size, apart = np.hypot(x, y), np.zeros(len(moves))
         if self.forces.direction == "feed":
@@ -184,9 +185,9 @@ class ForceWalk:
 
 
 @lru_cache(maxsize=8)
-def force_walk_of(program: Program) -> ForceWalk | None:
-    """The walk along a program with its forces; None where it has none."""
-    return None if program.forces is None else ForceWalk.of(program, program.forces)
+def make_force_walk(program: Program) -> ForceWalk | None:
+    """Return the walk along a program with its forces; None where it has none."""
+    return None if program.forces is None else ForceWalk.from_program(program, program.forces)
 
 
 KEYS = ("jaw", "contact", "jaw_force", "room")
@@ -195,50 +196,59 @@ ASKED = ("force", "line", "tool", "element")
 Row = tuple[arb, arb, arb]
 
 
-def program_force_findings(
+def judge_program_forces(
     fixture: Fixture,
     query: Query,
     hardware: ToolkitRules,
     balance: Balance | SeatBalance,
 ) -> Iterator[Finding]:
-    """What is wrong with the forces of the program that a file states of a fixture."""
-    said, walk = fixture.asking, None if query.program is None else force_walk_of(query.program)
+    """Yield what is wrong with the forces of the program that a file states of a fixture."""
+    said, walk = fixture.asking, None if query.program is None else make_force_walk(query.program)
     if walk is None or said is None:
         if said is not None:
             yield Finding(True, "the forces of its program are given, and the program has none")
         return
-    if fault := fault_of_form(said):
+    if fault := find_entry_fault(said):
         yield Finding(True, f"the forces of its program {fault}")
         return
     if balance.inverse is None:
         return
     locked = [
-        [a - k for a, k in zip(row, balance.kept_by_closing(row), strict=True)] for row in balance.responses
+        [a - k for a, k in zip(row, balance.project_on_closing(row), strict=True)]
+        for row in balance.responses
     ]
     each: list[Row] = [(x, y, m) for x, y, m in zip(*locked, strict=True)]
     asked: list[Row] = [
         (-x / force, -y / force, -m / force) for (x, y, m), force in zip(each, balance.forces, strict=True)
     ]
-    spare = parts_spared(balance.forces)
-    names = [element_name(peg, hardware) for peg in fixture.pegs]
-    need = most(walk.worst(*row) for row in asked)
-    yield from written("the jaw force of its program", said["jaw"]["force"], need, spare * abs(need))
+    spare = bound_relative_error(balance.forces)
+    names = [make_element_name(peg, hardware) for peg in fixture.pegs]
+    need = find_largest_or_zero(walk.find_worst(*row) for row in asked)
+    yield from judge_written_number(
+        "the jaw force of its program", said["jaw"]["force"], need, spare * abs(need)
+    )
     force = need if query.jaw_force is None else arb(query.jaw_force)
-    yield from written("the jaw force stated with it", said["jaw_force"], force, spare * abs(force))
+    yield from judge_written_number(
+        "the jaw force stated with it", said["jaw_force"], force, spare * abs(force)
+    )
     if (said["room"] is None) != (query.jaw_force is None):
         yield Finding(True, "the room of its jaw force is given without one, or missing with one")
     elif said["room"] is not None:
-        yield from written("the room of its jaw force", said["room"], force - need, spare * abs(need))
+        yield from judge_written_number(
+            "the room of its jaw force", said["room"], force - need, spare * abs(need)
+        )
     share = [force * own for own in balance.forces]
-    total = most(walk.worst(*row) + own for row, own in zip(each, share, strict=True))
-    yield from written("the largest force of a contact", said["contact"]["force"], total, spare * abs(total))
+    total = find_largest_or_zero(walk.find_worst(*row) + own for row, own in zip(each, share, strict=True))
+    yield from judge_written_number(
+        "the largest force of a contact", said["contact"]["force"], total, spare * abs(total)
+    )
     none = [arb(0)] * len(names)
     for key, functions, own, worst in (("jaw", asked, none, need), ("contact", each, share, total)):
         yield from place_findings(said[key], walk, names, functions, own, worst, spare)
 
 
-def fault_of_form(said: Any) -> str:
-    """What an entry lacks, behind "the forces of its program"; empty where it lacks nothing."""
+def find_entry_fault(said: Any) -> str:
+    """Return what an entry lacks, behind "the forces of its program"; empty where it lacks nothing."""
     if not isinstance(said, dict) or any(key not in said for key in KEYS):
         return f"do not have {', '.join(KEYS)}"
     if any(not isinstance(said[key], dict) or any(one not in said[key] for one in ASKED) for key in KEYS[:2]):
@@ -259,14 +269,14 @@ def place_findings(
     worst: arb,
     spare: arb,
 ) -> Iterator[Finding]:
-    """Whether a line, a tool and a contact are those of the worst value.
+    """Check whether a line, a tool and a contact are those of the worst value.
 
     ``functions`` are what the load does to each contact, ``own`` what the contact has without it.
     """
     if said["line"] is None:
         return
-    there = most(
-        walk.worst(*row, 0.0, said["line"], said["tool"]) + held
+    there = find_largest_or_zero(
+        walk.find_worst(*row, 0.0, said["line"], said["tool"]) + held
         for name, row, held in zip(names, functions, own, strict=True)
         if name == said["element"]
     )
@@ -278,8 +288,8 @@ def place_findings(
         )
 
 
-def most(values: Iterator[arb]) -> arb:
-    """The largest of some numbers, 0 or more."""
+def find_largest_or_zero(values: Iterator[arb]) -> arb:
+    """Return the largest of some numbers, 0 or more."""
     out = arb(0)
     for value in values:
         out = out.max(value)

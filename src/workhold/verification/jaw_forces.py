@@ -20,7 +20,14 @@ from numpy.typing import NDArray
 
 from workhold.model.jaw_hold import Patch, Rectangle
 
-__all__ = ["LENGTH", "HeldBetweenJaws", "UnsettledError", "pressures_of", "resultants_of", "wrench"]
+__all__ = [
+    "LENGTH",
+    "HeldBetweenJaws",
+    "UnsettledError",
+    "list_extreme_pressures",
+    "compute_resultant_points",
+    "compute_wrenches",
+]
 
 Array = NDArray[np.float64]
 # Cells of a rectangle, and of a line, and directions of friction: part of what is claimed.
@@ -36,8 +43,8 @@ class UnsettledError(Exception):
     """The method came to no end."""
 
 
-def hull_of(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """The corners of the convex hull counter-clockwise, by wrapping."""
+def find_hull_corners(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the corners of the convex hull counter-clockwise, by wrapping."""
     left = sorted(set(points))
     if len(left) < 3:
         return left
@@ -57,8 +64,10 @@ def hull_of(points: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
         at = ahead
 
 
-def moments_of(rectangles: Sequence[Rectangle]) -> tuple[float, Array, Array]:
-    """The area of rectangles, its centre (2,), and its second moments (2, 2) about that; of lines those of lengths."""
+def compute_area_moments(rectangles: Sequence[Rectangle]) -> tuple[float, Array, Array]:
+    """Return the area of rectangles, its centre (2,), and its second moments (2, 2) about that; of lines
+    those of lengths.
+    """
     line = all(x0 == x1 for x0, x1, _, _ in rectangles)
     areas = np.array([(z1 - z0) * (1.0 if line else x1 - x0) for x0, x1, z0, z1 in rectangles])
     centres = np.array([((x0 + x1) / 2, (z0 + z1) / 2) for x0, x1, z0, z1 in rectangles])
@@ -70,13 +79,16 @@ def moments_of(rectangles: Sequence[Rectangle]) -> tuple[float, Array, Array]:
     return area, centre, second
 
 
-def pressures_of(patch: Patch) -> tuple[Array, list[tuple[float, float]]]:
-    """Pressures (R, 3) of unit force, p = (1, x, z) . row, each of which vanishes along one side of the hull.
+def list_extreme_pressures(patch: Patch) -> tuple[Array, list[tuple[float, float]]]:
+    """Return the pressures (R, 3) of unit force, p = (1, x, z) . row, each of which vanishes along one side
+    of the hull.
 
     The second are the hull's corners.
     """
-    area, centre, _ = moments_of(patch.rectangles)
-    corners = hull_of([(x, z) for x0, x1, z0, z1 in patch.rectangles for x in (x0, x1) for z in (z0, z1)])
+    area, centre, _ = compute_area_moments(patch.rectangles)
+    corners = find_hull_corners(
+        [(x, z) for x0, x1, z0, z1 in patch.rectangles for x in (x0, x1) for z in (z0, z1)]
+    )
     rows = []
     if len(corners) == 2:
         sides = [((0.0, 1.0), corners[0][1]), ((0.0, -1.0), -corners[1][1])]
@@ -93,10 +105,12 @@ def pressures_of(patch: Patch) -> tuple[Array, list[tuple[float, float]]]:
     return np.array(rows), corners
 
 
-def resultants_of(patch: Patch) -> Array:
-    """Where the resultants (R, 2) of these pressures act: from the centre on, the second moments times the slope."""
-    pressures, _ = pressures_of(patch)
-    _, centre, second = moments_of(patch.rectangles)
+def compute_resultant_points(patch: Patch) -> Array:
+    """Return where the resultants (R, 2) of these pressures act: from the centre on, the second moments times
+    the slope.
+    """
+    pressures, _ = list_extreme_pressures(patch)
+    _, centre, second = compute_area_moments(patch.rectangles)
     return np.asarray(centre + pressures[:, 1:] @ second)
 
 
@@ -116,10 +130,10 @@ class PressingJaw:
     bearing: Array
 
     @classmethod
-    def of(cls, patch: Patch, y: float, way: float, friction: float) -> PressingJaw:
-        pressures, _ = pressures_of(patch)
-        acting = resultants_of(patch)
-        pressing = wrench(
+    def from_patch(cls, patch: Patch, y: float, way: float, friction: float) -> PressingJaw:
+        pressures, _ = list_extreme_pressures(patch)
+        acting = compute_resultant_points(patch)
+        pressing = compute_wrenches(
             np.column_stack([acting[:, 0], np.full(len(acting), y), acting[:, 1]]), (0.0, way, 0.0)
         )
         line = all(x0 == x1 for x0, x1, _, _ in patch.rectangles)
@@ -138,12 +152,12 @@ class PressingJaw:
                     areas.append((z1 - z0) / up * (1.0 if line else (x1 - x0) / across))
         at = np.array(points)
         turns = [2 * pi * k / WAYS for k in range(WAYS)]
-        rubbing = np.stack([wrench(at, (cos(turn), 0.0, sin(turn))) for turn in turns], axis=1)
+        rubbing = np.stack([compute_wrenches(at, (cos(turn), 0.0, sin(turn))) for turn in turns], axis=1)
         local = pressures @ np.column_stack([np.ones(len(at)), at[:, 0], at[:, 2]]).T
         return cls(pressing, rubbing, friction * np.maximum(local, 0.0) * np.array(areas))
 
-    def best(self, twist: Array) -> tuple[float, Array]:
-        """The wrench with unit force that works most with a twist (6,), and its work."""
+    def find_best_wrench(self, twist: Array) -> tuple[float, Array]:
+        """Return the wrench with unit force that works most with a twist (6,), and its work."""
         works = self.rubbing @ twist
         chosen = works.argmax(axis=1)
         friction = self.bearing @ np.take_along_axis(works, chosen[:, None], axis=1)[:, 0]
@@ -153,8 +167,8 @@ class PressingJaw:
         return float(total[row]), self.pressing[row] + self.bearing[row] @ rubbed
 
 
-def wrench(points: Array, force: tuple[float, float, float]) -> Array:
-    """Wrenches (N, 6) of a force at points (N, 3)."""
+def compute_wrenches(points: Array, force: tuple[float, float, float]) -> Array:
+    """Return the wrenches (N, 6) of a force at points (N, 3)."""
     forces = np.tile(force, (len(points), 1))
     x, y, z = points.T
     fx, fy, fz = forces.T
@@ -184,7 +198,7 @@ class HeldBetweenJaws:
         return MOVED * np.array([0.61803399, 0.41421356, 0.73205081, 0.23606798, 0.64575131, 0.31662479])
 
     @classmethod
-    def of(
+    def from_patches(
         cls,
         fixed: Patch,
         moving: Patch,
@@ -198,24 +212,27 @@ class HeldBetweenJaws:
             for patch, y in ((fixed, 0.0), (moving, opening))
             for end in (min(one[0] for one in patch.rectangles), max(one[1] for one in patch.rectangles))
         ]
-        free = wrench(np.array(feet), (0.0, 0.0, 1.0))
+        free = compute_wrenches(np.array(feet), (0.0, 0.0, 1.0))
         if stop:
-            free = np.vstack([free, wrench(np.array(stop), (stop_way, 0.0, 0.0))])
+            free = np.vstack([free, compute_wrenches(np.array(stop), (stop_way, 0.0, 0.0))])
         return cls(
-            PressingJaw.of(fixed, 0.0, 1.0, friction), PressingJaw.of(moving, opening, -1.0, friction), free
+            PressingJaw.from_patch(fixed, 0.0, 1.0, friction),
+            PressingJaw.from_patch(moving, opening, -1.0, friction),
+            free,
         )
 
-    def force_needed(
+    def compute_needed_force(
         self, point: tuple[float, float, float], force: tuple[float, float, float], moment: float
     ) -> float | None:
-        """The least jaw force in N for a force at a point and a moment about z; None where none is enough.
+        """Return the least jaw force in N for a force at a point and a moment about z; None where none is
+        enough.
 
         Raises
         ------
         UnsettledError
             Where the method comes to no end.
         """
-        load = wrench(np.array([point]), force)[0]
+        load = compute_wrenches(np.array([point]), force)[0]
         load[5] += moment / LENGTH
         found = self.answer(load)
         return None if found is None else found[0]
@@ -233,10 +250,10 @@ class HeldBetweenJaws:
         size = float(np.abs(load).max())
         if size == 0.0:
             return 0.0, np.zeros(6)
-        least = self.least(-load / size + self.side)
+        least = self.solve_least_cost(-load / size + self.side)
         return None if least is None else (max(least[0], 0.0) * size, least[1])
 
-    def least(self, side: Array) -> tuple[float, Array] | None:
+    def solve_least_cost(self, side: Array) -> tuple[float, Array] | None:
         """Return the least cost of forces whose wrenches sum to a side (6,), and the prices (6,) of the side."""
         # The first basis stands for what is not balanced yet.
         columns, prices = np.diag(np.where(side < 0, -1.0, 1.0)), np.zeros(6)
@@ -247,7 +264,7 @@ class HeldBetweenJaws:
                 inverse = np.linalg.inv(columns)
                 amount = inverse @ side
                 prices = (np.where(missing, 1.0, 0.0) if is_first else costs) @ inverse
-                gain, column, cost = self.entering(prices, is_first)
+                gain, column, cost = self.find_entering_wrench(prices, is_first)
                 if gain <= GAIN:
                     break
                 change = inverse @ column
@@ -267,11 +284,11 @@ class HeldBetweenJaws:
                 return None
         return float(costs @ amount), prices
 
-    def entering(self, prices: Array, is_first: bool) -> tuple[float, Array, float]:
-        """What gains most at some prices (6,): the gain, its wrench and its cost."""
+    def find_entering_wrench(self, prices: Array, is_first: bool) -> tuple[float, Array, float]:
+        """Return what gains most at some prices (6,): the gain, its wrench and its cost."""
         found = []
         for jaw, cost in ((self.fixed, 0.0), (self.moving, 0.0 if is_first else 1.0)):
-            work, best = jaw.best(prices)
+            work, best = jaw.find_best_wrench(prices)
             found.append((work - cost, best, 0.0 if jaw is self.fixed else 1.0))
         works = self.free @ prices
         number = int(works.argmax())

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import ProgramNeed
 from workhold.model.program import Program
-from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, UnsettledError, wrench
+from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, UnsettledError, compute_wrenches
 from workhold.verification.tool_walk import walk_of
 
-__all__ = ["program_force_faults"]
+__all__ = ["find_program_force_faults"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -56,7 +56,7 @@ class PressingPath:
     spread: float
 
     @classmethod
-    def of(cls, program: Program, fixture: Fixture, height: float, safety: float) -> PressingPath:
+    def from_program(cls, program: Program, fixture: Fixture, height: float, safety: float) -> PressingPath:
         walk, forces, moves = walk_of(program), program.forces, program.moves
         assert forces is not None
         stretches = forces.stretches
@@ -67,7 +67,7 @@ class PressingPath:
             first, last = stretches.first[whole], stretches.last[whole]
             shares.append(first + place * (last - first))
         move, share = np.concatenate(rows), np.concatenate(shares)
-        x, y = walk.at(move, share).T
+        x, y = walk.compute_places_at(move, share).T
         z = moves.start[move, 2] + share * (moves.end[move, 2] - moves.start[move, 2])
         turn = radians(fixture.pose.theta_deg)
         point = np.column_stack(
@@ -90,7 +90,7 @@ class PressingPath:
             SIXTY if forces.direction == "feed" else pi,
         )
 
-    def only(self, moves: IntArray) -> PressingPath:
+    def select_moves(self, moves: IntArray) -> PressingPath:
         """Return the places on some moves."""
         own = np.isin(self.move, moves)
         return PressingPath(
@@ -107,11 +107,11 @@ class PressingPath:
         """Return the wrench (6,) of a tool in a place, with a direction in radians, an axial force and a torque."""
         force = float(self.force[place])
         x, y, z = self.point[place].tolist()
-        row = wrench(np.array([[x, y, z]]), (force * cos(turn), force * sin(turn), -pull))[0]
+        row = compute_wrenches(np.array([[x, y, z]]), (force * cos(turn), force * sin(turn), -pull))[0]
         row[5] += twist / LENGTH
         return np.asarray(row)
 
-    def dearest(self, prices: Array) -> Array:
+    def find_dearest_load(self, prices: Array) -> Array:
         """Return the load (6,) of all whose price is the least: -prices . load is what it asks for at least."""
         x, y, z = self.point.T
         a, b, c, k, m, n = -prices / np.array([1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH])
@@ -128,12 +128,12 @@ class PressingPath:
         twist = float(self.torque[place]) * (1.0 if n > 0.0 else -1.0)
         return self.load(place, float(turn[place]), float(pull[place]), twist)
 
-    def hardest(self, held: HeldBetweenJaws, starts: list[Array]) -> float | None:
+    def find_hardest_force(self, held: HeldBetweenJaws, starts: list[Array]) -> float | None:
         """Return the largest jaw force in N that ascents come upon; None where a load is held by none."""
         worst, known = 0.0, set[bytes]()
         for prices in starts:
             for _ in range(MOST_STEPS):
-                load = self.dearest(prices)
+                load = self.find_dearest_load(prices)
                 # Where an ascent came by before, it goes on as it did then.
                 if (key := load.round(9).tobytes()) in known:
                     break
@@ -145,7 +145,7 @@ class PressingPath:
                 worst = max(worst, force)
         return worst
 
-    def tried_loads(self) -> Iterator[Array]:
+    def list_tried_loads(self) -> Iterator[Array]:
         """Give loads of a few places in several directions."""
         for place in sorted({0, len(self.move) // 2, len(self.move) - 1}):
             for number in range(TRIED):
@@ -153,7 +153,7 @@ class PressingPath:
                 yield self.load(place, turn, float(self.axial[place, 0]), float(self.torque[place]))
 
 
-def program_force_faults(
+def find_program_force_faults(
     program: Program,
     need: ProgramNeed | None,
     fixture: Fixture,
@@ -170,7 +170,7 @@ def program_force_faults(
     height : of the part, in mm.
     safety : factor on the loads.
     """
-    path = PressingPath.of(program, fixture, height, safety)
+    path = PressingPath.from_program(program, fixture, height, safety)
     if (need is None) != (not len(path.move)):
         yield "the jaw force of its program is missing, or given where no tool presses on the part"
         return
@@ -178,13 +178,13 @@ def program_force_faults(
         return
     moves = program.moves
     of_line = np.flatnonzero((moves.line == need.line) & (moves.tool == need.tool))
-    named = path.only(of_line)
+    named = path.select_moves(of_line)
     if not len(named.move):
         yield f"no T{need.tool} presses on the part in line {need.line} of the program"
         return
     try:
         starts = [*np.eye(6), *-np.eye(6)]
-        for load in named.tried_loads():
+        for load in named.list_tried_loads():
             found = held.answer(load)
             if found is None:
                 if need.force is not None:
@@ -194,7 +194,7 @@ def program_force_faults(
         if need.force is None:
             yield f"no jaw force is said to hold the part in line {need.line}, and some do"
             return
-        worst, there = path.hardest(held, starts), named.hardest(held, starts)
+        worst, there = path.find_hardest_force(held, starts), named.find_hardest_force(held, starts)
     except (UnsettledError, np.linalg.LinAlgError):
         return
     if worst is None or there is None:

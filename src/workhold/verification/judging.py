@@ -30,10 +30,16 @@ from workhold.model.query import Query
 from workhold.model.seating import Seating
 from workhold.verification.ball_geometry import LineSide, Side
 from workhold.verification.contacts import BallPose
-from workhold.verification.first_choice import EffectiveJudge, angle_class
+from workhold.verification.first_choice import EffectiveJudge, classify_angle
 from workhold.verification.listing import Claim
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.travel import WAYS, direction_of, directions_of, quarter_turns, seen_along_x
+from workhold.verification.rules.travel import (
+    WAYS,
+    count_quarter_turns,
+    find_direction,
+    list_directions,
+    turn_hole_back,
+)
 from workhold.verification.tolerances import (
     CLOSE_READING,
     GENTLE_PEG,
@@ -57,11 +63,12 @@ from workhold.verification.tolerances import (
     WEAK_CLOSURE,
 )
 
-__all__ = ["main_direction", "order_faults", "penalty", "rank", "tilt", "warnings"]
+__all__ = ["find_main_direction", "order_faults", "compute_penalty", "rank", "compute_tilt", "count_warnings"]
 
 
-def main_direction(faces: Sequence[Side]) -> arb:
-    """Direction in degrees of the straight faces that are longest with those along or square to them.
+def find_main_direction(faces: Sequence[Side]) -> arb:
+    """Return the direction in degrees of the straight faces that are longest with those along or square to
+    them.
 
     The longest of them counts, the first of equally long ones; they are chosen in doubles. It is the
     drawing's own x where there is no straight face, or others have about as much length.
@@ -91,28 +98,28 @@ def main_direction(faces: Sequence[Side]) -> arb:
     return arb.atan2(along[1], along[0]) * 180 / arb.pi()
 
 
-def tilt(pose: BallPose, direction: arb) -> arb:
-    """Angle in degrees from the main direction to the nearer of the jaws' two; 0 if it counts as square."""
+def compute_tilt(pose: BallPose, direction: arb) -> arb:
+    """Return the angle in degrees from the main direction to the nearer of the jaws' two; 0 if it counts as square."""
     angle = pose.theta * 180 / arb.pi() + direction
     off = abs(angle - 90 * round(float(angle.mid()) / 90))
     within = SQUARE_TILT - off
     return off if within < -HAIR else arb(0) if within > HAIR else off.union(arb(0))
 
 
-def over(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
-    """Whether a value with a relative error, and a hair, is above a limit: at least and at most, 0 or 1."""
+def count_if_above(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
+    """Return whether a value with a relative error, and a hair, is above a limit: at least and at most, 0 or 1."""
     spare = HAIR + part * abs(value)
     above = value - limit
     return int(bool(above > spare)), int(not above < -spare)
 
 
-def within_sum(pairs: Sequence[tuple[int, int]]) -> arb:
-    """The count of several things, each between two whole numbers."""
+def sum_ranges(pairs: Sequence[tuple[int, int]]) -> arb:
+    """Return the count of several things, each between two whole numbers."""
     low, high = (arb(sum(ends)) for ends in zip(*pairs, strict=True))
     return low.union(high) if low < high else low
 
 
-def warnings(
+def count_warnings(
     figures: Mapping[str, arb],
     edges: Sequence[arb],
     off: arb,
@@ -121,7 +128,7 @@ def warnings(
     bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT),
     states_bending: bool = True,
 ) -> arb:
-    """How many warnings there are.
+    """Return how many warnings there are.
 
     They are for contacts near an edge, a weak closure, a strong peg, a large location error, and a peg that
     lets go. At a jaw force that is known they are for a peg that is bent too hard, and for pegs that give
@@ -132,21 +139,21 @@ def warnings(
     says whether the file states how far pegs bend. Where it was made before there was that figure, it may
     have counted it or not.
     """
-    pairs = [over(-edge, -NEAR_EDGE, part) for edge in edges]
-    pairs.append(over(-figures["closure_margin"], -WEAK_CLOSURE, part))
-    pairs.append(over(figures["clamp_amplification"], STRONG_PEG, part))
-    pairs.append(over(figures["location_error"], LARGE_LOCATION_ERROR * off, part))
+    pairs = [count_if_above(-edge, -NEAR_EDGE, part) for edge in edges]
+    pairs.append(count_if_above(-figures["closure_margin"], -WEAK_CLOSURE, part))
+    pairs.append(count_if_above(figures["clamp_amplification"], STRONG_PEG, part))
+    pairs.append(count_if_above(figures["location_error"], LARGE_LOCATION_ERROR * off, part))
     if jaw_force is not None and "jaw_force_needed" in figures:
-        pairs.append(over(figures["jaw_force_needed"], arb(jaw_force) * (1 + arb(HAIR)), part))
+        pairs.append(count_if_above(figures["jaw_force_needed"], arb(jaw_force) * (1 + arb(HAIR)), part))
     for key, limit in zip(("pin_stress", "pin_movement"), bending, strict=True):
         if jaw_force is not None and key in figures:
-            low, high = over(figures[key], limit, part)
+            low, high = count_if_above(figures[key], limit, part)
             pairs.append((low if states_bending else 0, high))
-    return within_sum(pairs)
+    return sum_ranges(pairs)
 
 
-def penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) -> arb:
-    """Points for the location error, rounded up, and for a tilt, a strong peg and a small face."""
+def compute_penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) -> arb:
+    """Return the points for the location error, rounded up, and for a tilt, a strong peg and a small face."""
     points = [(0, 0)]
     if off > 0:
         steps = POINTS_PER_DECADE * (figures["location_error"] / off).log() / arb(10).log()
@@ -154,11 +161,11 @@ def penalty(figures: Mapping[str, arb], off: arb, diameter: float, part: arb) ->
         spare = 2 * HAIR + 10 * float(part.mid())
         points = [(ceil(float(steps.lower()) - spare), ceil(float(steps.upper()) + spare - 2 * HAIR))]
     weights = (
-        (over(figures["tilt"], SQUARE_TILT / 2, part), TILTED_POINTS),
-        (over(figures["clamp_amplification"], GENTLE_PEG, part), STRONG_POINTS),
-        (over(-figures["smallest_face"], -SMALL_FACE * arb(diameter), part), SMALL_FACE_POINTS),
+        (count_if_above(figures["tilt"], SQUARE_TILT / 2, part), TILTED_POINTS),
+        (count_if_above(figures["clamp_amplification"], GENTLE_PEG, part), STRONG_POINTS),
+        (count_if_above(-figures["smallest_face"], -SMALL_FACE * arb(diameter), part), SMALL_FACE_POINTS),
     )
-    return within_sum([*points, *((weight * low, weight * high) for (low, high), weight in weights)])
+    return sum_ranges([*points, *((weight * low, weight * high) for (low, high), weight in weights)])
 
 
 # Files have twelve significant digits.
@@ -179,21 +186,21 @@ class OrderJudge:
     query: Query
     effective: EffectiveJudge
 
-    def first(self, fixture: Fixture, figures: Mapping[str, float]) -> list[Range]:
-        """Whether there is a warning, the steps above the least error, and the class of the angle."""
+    def rank_first_keys(self, fixture: Fixture, figures: Mapping[str, float]) -> list[Range]:
+        """Return whether there is a warning, the steps above the least error, and the class of the angle."""
         warned = float(figures.get("warnings", 0.0) > HAIR)
-        low, high = angle_class(fixture.pose.theta_deg)
-        return [(warned, warned), self.effective.steps(fixture), (low, high)]
+        low, high = classify_angle(fixture.pose.theta_deg)
+        return [(warned, warned), self.effective.count_error_steps(fixture), (low, high)]
 
-    def least_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
-        """What is wrong with the least effective error of all; ``is_whole`` where all are listed."""
+    def find_least_error_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
+        """Return what is wrong with the least effective error of all; ``is_whole`` where all are listed."""
         if not fixtures:
             return ""
         least = self.effective.least
         if least is None:
             return "the least effective error, from which steps of the order count, is missing"
         off = self.query.tolerance.peg + self.query.tolerance.face
-        ranked = [(unfit(fixture, off), fixture) for fixture in fixtures]
+        ranked = [(rank_unfit(fixture, off), fixture) for fixture in fixtures]
         classes = [
             (bad[0] + (bad[0] != bad[1]) / 2, fixture.quality.get("warnings", 0.0) > HAIR)
             for bad, fixture in ranked
@@ -203,7 +210,7 @@ class OrderJudge:
             # Whether the first is fit is a matter of the last digit.
             return ""
         errors = [
-            self.effective.error(fixture)
+            self.effective.compute_effective_error(fixture)
             for one, (_, fixture) in zip(classes, ranked, strict=True)
             if one == best
         ]
@@ -224,7 +231,7 @@ def order_faults(
     is_whole: bool = False,
     is_chosen: bool = False,
 ) -> Iterator[str]:
-    """A fault for a fixture out of order, where the figures ranked by are written.
+    """Yield a fault for a fixture out of order, where the figures ranked by are written.
 
     ``least`` is the least effective error of all in mm, as written. ``is_whole`` says whether all that was
     found is listed, and ``is_chosen`` whether the best may be among what is not.
@@ -236,18 +243,22 @@ def order_faults(
         # What stands on something else is refuted, and no effective error of it is known.
         return
     judge = OrderJudge(query, EffectiveJudge(query, least)) if query.has_house_order else None
-    if judge is not None and (fault := judge.least_fault(fixtures, is_whole)):
+    if judge is not None and (fault := judge.find_least_error_fault(fixtures, is_whole)):
         yield fault
         return
     off = query.tolerance.peg + query.tolerance.face
 
     def row_of(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
-        """What a fixture is ordered by, with some figures."""
-        first = judge.first(fixture, figures) if judge is not None and asked.has_house_order else []
-        return [unfit(fixture, off), *first, *ranges(figures, list_ranking_figures(asked.rank_by))]
+        """Return what a fixture is ordered by, with some figures."""
+        first = judge.rank_first_keys(fixture, figures) if judge is not None and asked.has_house_order else []
+        return [
+            rank_unfit(fixture, off),
+            *first,
+            *list_ranked_ranges(figures, list_ranking_figures(asked.rank_by)),
+        ]
 
     rows = [row_of(fixture, fixture.quality, usual) for fixture in fixtures]
-    stated = [figures_stated(fixture) for fixture in fixtures]
+    stated = [collect_stated_figures(fixture) for fixture in fixtures]
     seated = [
         None if figures is None else [*row_of(fixture, figures, query), *row[1:]]
         for fixture, row, figures in zip(fixtures, rows, stated, strict=True)
@@ -279,28 +290,28 @@ def order_faults(
             return
     # That which has the least error stands no step above it, so neither does the first.
     is_bare = judge is not None and least is not None and count == 0 and bool(fixtures) and not is_chosen
-    if is_bare and judge is not None and judge.effective.steps(fixtures[0])[0] > 0:
+    if is_bare and judge is not None and judge.effective.count_error_steps(fixtures[0])[0] > 0:
         yield f"the least effective error is given as {least:.9f} mm, a step below that of the first fixture"
 
 
-def figures_stated(fixture: Fixture) -> dict[str, float] | None:
-    """The figures of quality and seating, whose warnings count as well; None where no seating is stated."""
+def collect_stated_figures(fixture: Fixture) -> dict[str, float] | None:
+    """Return the figures of quality and seating, whose warnings count as well; None where no seating is stated."""
     claim: Claim | None = fixture.seating
     if claim is None:
         return None
     figures = {**fixture.quality, **claim.seating.figures}
-    return figures | {"warnings": figures.get("warnings", 0.0) + warning_count(claim.seating)}
+    return figures | {"warnings": figures.get("warnings", 0.0) + count_seating_warnings(claim.seating)}
 
 
-def warning_count(seating: Seating) -> int:
-    """How many warnings of quality a seating counts as: two for a small opening, one for a close reading."""
+def count_seating_warnings(seating: Seating) -> int:
+    """Return how many warnings of quality a seating counts as: two for a small opening, one for a close reading."""
     opening, reading = seating.capture_opening, seating.reading_of()
     small = opening is not None and opening < SMALL_CAPTURE
     return 2 * small + (reading is not None and round(reading, 9) < CLOSE_READING)
 
 
-def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
-    """What the figures of a fixture count as, the first counting most and smaller being better."""
+def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Range]:
+    """Yield what the figures of a fixture count as, the first counting most and smaller being better."""
     for place, key in enumerate(ranking, 1):
         value = -figures[key] if MORE_IS_BETTER[key] else figures[key]
         if isinf(value):
@@ -317,7 +328,7 @@ def ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> Iterator[Ran
 
 
 def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
-    """Whether a fixture certainly comes before another one that is as good."""
+    """Return whether a fixture certainly comes before another one that is as good."""
     (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
         rank(fixture, hardware) for fixture in (one, other)
     )
@@ -327,21 +338,21 @@ def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
 
 
 def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
-    """The numbers that order fixtures that are equally good.
+    """Return the numbers that order fixtures that are equally good.
 
     Without a wall and with one thing that moves a fixture is turned so that it clamps along -x. Then columns
     count from the first peg of each carrier, rows from the lowest of all. With as many pegs on both jaws that
     are alike it counts as it is at an orientation below half a turn. All others count in the holes in which
     they stand.
     """
-    ways = [list(WAYS).index(name) for name in directions_of(fixture)]
+    ways = [list(WAYS).index(name) for name in list_directions(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
     theta = radians(fixture.pose.theta_deg)
     if len(ways) > 1 or hardware.walls:
         pegs = list[Peg]()
         for carrier in hardware.carriers.values():
             there = [peg for peg in fixture.pegs if peg.carrier == carrier.name]
-            pegs += sorted(there, key=hole_and_face) if carrier in hardware.lattices else there
+            pegs += sorted(there, key=make_peg_key) if carrier in hardware.lattices else there
         placed = [peg for peg in pegs if hardware.carriers[peg.carrier].contact.is_placed]
         holes = [[getattr(peg, noun) for peg in placed] for noun in ("column", "row")]
         if hardware.jaw is not None:
@@ -349,13 +360,13 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
             holes[0] = [column - min(holes[0]) for column in holes[0]]
         return [*numbers, *holes[0], *holes[1]], (theta + SAME) % tau - SAME, [peg.face for peg in pegs]
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices]
-    clamps = [peg for peg in fixture.pegs if direction_of(peg)]
-    turns = quarter_turns(fixture.direction) if fixture.direction else 0
+    clamps = [peg for peg in fixture.pegs if find_direction(peg)]
+    turns = count_quarter_turns(fixture.direction) if fixture.direction else 0
     alike = len(groups) > 1 and len(groups[0]) == len(groups[1]) and hardware.half_turns
     if alike and (theta + SAME) % tau >= pi:
         turns, groups = 2, groups[::-1]
     seen = [
-        [(*seen_along_x(turns, peg.column, peg.row), peg.face) for peg in group]
+        [(*turn_hole_back(turns, peg.column, peg.row), peg.face) for peg in group]
         for group in (*groups, clamps)
         if group
     ]
@@ -367,13 +378,13 @@ def rank(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     return [*numbers, *columns, *rows], (theta - turns * pi / 2 + SAME) % tau - SAME, faces
 
 
-def hole_and_face(peg: Peg) -> tuple[int, int, int]:
-    """The numbers that order the pegs of one carrier."""
+def make_peg_key(peg: Peg) -> tuple[int, int, int]:
+    """Return the numbers that order the pegs of one carrier."""
     return peg.column, peg.row, peg.face
 
 
-def unfit(fixture: Fixture, off: float) -> Range:
-    """A range about 1 for a fixture that is unfit for a workshop, about 0 for one that is fit.
+def rank_unfit(fixture: Fixture, off: float) -> Range:
+    """Return a range about 1 for a fixture that is unfit for a workshop, about 0 for one that is fit.
 
     It is 0 to 1 without the figures. ``off`` is the sum of the tolerances of peg and face, in mm.
     """
@@ -386,7 +397,7 @@ def unfit(fixture: Fixture, off: float) -> Range:
 
 
 def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
-    """Whether one row of numbers is certainly less than another, at the first that may differ.
+    """Return whether one row of numbers is certainly less than another, at the first that may differ.
 
     None where the rows are equal.
     """

@@ -18,16 +18,16 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.archive import is_archive, mapped_archive
-from workhold.asking.declaring import declarations_of
+from workhold.archive import is_archive, map_archive
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
-from workhold.files.result.fixture_forms import checked_seating, seatings_of
+from workhold.files.result.fixture_forms import check_seating, read_head_seatings
 from workhold.files.result.forms import Head
 from workhold.files.result.hold_text import is_hold
 from workhold.files.result.holds import HoldPart, read_holds
 from workhold.files.result.notes import note_faults, read_notes
-from workhold.files.result.parts import HEAD, checked_head, columns_said, head_value, read_parts
+from workhold.files.result.parts import HEAD, check_head, describe_columns_from_head, parse_head, read_parts
 from workhold.fixels.fields import OPTIONS
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import SILENT
@@ -42,14 +42,14 @@ from workhold.model.result import Result
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
 from workhold.model.solid import BESIDE_TOP
-from workhold.verification.reading import fixtures_of, with_working_forces
+from workhold.verification.reading import add_working_forces, read_fixtures
 from workhold.verification.rules.hardware import ToolkitRules
 
 __all__ = [
     "Claim",
     "Listing",
     "claim_of",
-    "listing_of",
+    "collect_claims",
     "read_listing",
 ]
 
@@ -74,13 +74,16 @@ class Claim:
 
 
 def claim_of(fields: Any, pose: Pose, query: Query, path: Path | str, number: int) -> Claim:
-    """The claim that fields make of a fixture, counted from 1, in a pose; refuses fields that cannot be used."""
-    seating = checked_seating(fields, pose, Path(path), number)
+    """Return the claim that fields make of a fixture, counted from 1, in a pose; refuse fields that cannot be used."""
+    seating = check_seating(fields, pose, Path(path), number)
     return Claim(fields, seating.in_toolkit(query.toolkit, query.opening))
 
 
-def with_claims(fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result") -> list[Fixture]:
-    """Fixtures, whose seating is given by fields or is one of the model, with what is claimed of it.
+def add_seating_claims(
+    fixtures: Sequence[Fixture], query: Query, path: Path | str = "the result"
+) -> list[Fixture]:
+    """Return the fixtures, whose seating is given by fields or is one of the model, with what is claimed of
+    it.
 
     Refuses fields that cannot be used.
     """
@@ -142,13 +145,13 @@ class FixturesInColumns(Sequence[Fixture]):
     def __getitem__(self, place: int | slice) -> Fixture | list[Fixture]:
         if isinstance(place, slice):
             return [self[k] for k in range(len(self))[place]]
-        made = self.made(place)
+        made = self.make_fixture(place)
         # A place from the end is one from the start.
         place %= len(self)
         return evolve(made, seating=self.claims[place]) if place < len(self.claims) else made
 
-    def made(self, place: int) -> Fixture:
-        """The fixture of a place, without its seating."""
+    def make_fixture(self, place: int) -> Fixture:
+        """Return the fixture of a place, without its seating."""
         numbers = {name: values[place].tolist() for name, values in self.columns.items()}
         arrangement, travelled = self.toolkit.arrangements[numbers["arrangement"]], numbers["jaw_separation"]
         pegs, pairs = [], isinstance(travelled, list)
@@ -177,7 +180,7 @@ class FixturesInColumns(Sequence[Fixture]):
         reactions = tuple((one, other) for one, other in numbers["force"])
         pair = Pair((travelled[0], travelled[1]), (low, high), reactions, numbers["pairs"])
         listed = Fixture(arrangement.name, tuple(pegs), pose, travelled[0], known, arrangement.direction)
-        return with_working_forces(listed, pair)
+        return add_working_forces(listed, pair)
 
 
 @frozen(eq=False)
@@ -218,14 +221,14 @@ class Listing:
 
     @property
     def hardware(self) -> ToolkitRules:
-        return ToolkitRules.of(self.query)
+        return ToolkitRules.from_query(self.query)
 
 
-def listing_of(result: Result) -> Listing:
-    """What a result claims that is not in a file."""
+def collect_claims(result: Result) -> Listing:
+    """Return what a result claims that is not in a file."""
     return Listing(
         result.query,
-        with_claims(list(result), result.query),
+        add_seating_claims(list(result), result.query),
         result.counts,
         result.found,
         result.distinct,
@@ -240,7 +243,7 @@ def listing_of(result: Result) -> Listing:
 
 
 def read_listing(path: str | Path) -> Listing:
-    """What a result file claims.
+    """Return what a result file claims.
 
     Raises
     ------
@@ -248,23 +251,27 @@ def read_listing(path: str | Path) -> Listing:
         When the file cannot be read, is no result file, or describes no usable workpiece or toolkit.
     """
     path = Path(path)
-    head, taken, seatings = head_and_fixtures(path)
+    head, taken, seatings = read_head_and_fixtures(path)
     try:
-        query = head.query()
+        query = head.to_query()
         types, notes = query.toolkit.types, read_notes(head, query)
         return Listing(
             query,
-            held_by_jaws(taken, query)
+            read_jaw_fixtures(taken, query)
             if query.toolkit.flat_jaws is not None
-            else taken_in(taken, seatings, ToolkitRules.of(query), query, path),
-            numbers_of(head.counts, "counts", types),
-            numbers_of(head.found, "found", types, head.counts),
-            numbers_of(head.distinct, "distinct", types, head.counts),
+            else complete_fixtures(taken, seatings, ToolkitRules.from_query(query), query, path),
+            read_counts_by_type(head.counts, "counts", types),
+            read_counts_by_type(head.found, "found", types, head.counts),
+            read_counts_by_type(head.distinct, "distinct", types, head.counts),
             head.complete,
             notes,
             head.statistics,
-            None if head.proof is None else head.proof.proof(),
-            (*keys_missing(head), *turned_loops(head.workpiece.loops, query), *note_faults(head, notes)),
+            None if head.proof is None else head.proof.to_proof(),
+            (
+                *find_missing_keys(head),
+                *find_turned_loops(head.workpiece.loops, query),
+                *note_faults(head, notes),
+            ),
             head.pairs,
             head.seats,
             head.least_effective_error,
@@ -273,42 +280,43 @@ def read_listing(path: str | Path) -> Listing:
         raise InputError(f"{path} cannot be verified: {error}") from error
 
 
-def held_by_jaws(taken: Any, query: Query) -> list[Fixture]:
-    """The fixtures of flat jaws; refuses others."""
+def read_jaw_fixtures(taken: Any, query: Query) -> list[Fixture]:
+    """Return the fixtures of flat jaws; refuse others."""
     if not isinstance(taken, list) or not all(isinstance(one, HoldPart) for one in taken):
         raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
-    return [part.fixture(query.toolkit, query.unit_force) for part in taken]
+    return [part.to_fixture(query.toolkit, query.unit_force) for part in taken]
 
 
-def head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[HoldPart] | Columns, list[Any]]:
-    """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
+def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[HoldPart] | Columns, list[Any]]:
+    """Return the head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
     try:
         if is_archive(path):
             # All of it is read once, to compare its checksums.
-            text, columns = mapped_archive(path, columns_said, HEAD, whole=True)
-            data = head_value(text)
-            return checked_head(data, path), columns, seatings_of(data, path)
+            text, columns = map_archive(path, describe_columns_from_head, HEAD, whole=True)
+            data = parse_head(text)
+            return check_head(data, path), columns, read_head_seatings(data, path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    return *read_parts(path, fixtures_of_any_kind), []
+    return *read_parts(path, read_any_fixtures), []
 
 
-def fixtures_of_any_kind(items: Iterable[Any], path: Path) -> list[Fixture] | list[HoldPart]:
-    """Fixtures with pegs, or such as flat jaws hold."""
+def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[HoldPart]:
+    """Return the fixtures with pegs, or such as flat jaws hold."""
     iterator = iter(items)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
-    return read_holds(together, path) if first and is_hold(first[0]) else fixtures_of(together, path)
+    return read_holds(together, path) if first and is_hold(first[0]) else read_fixtures(together, path)
 
 
-def taken_in(
+def complete_fixtures(
     fixtures: list[Fixture] | list[HoldPart] | Columns,
     seatings: Sequence[Any],
     hardware: ToolkitRules,
     query: Query,
     path: Path,
 ) -> Sequence[Fixture]:
-    """Fixtures with the travels of their clamps and with the seating that stands apart in a file of columns.
+    """Return the fixtures with the travels of their clamps and with the seating that stands apart in a file
+    of columns.
 
     Refuses the first one that is of another kind, or whose seating cannot be used.
     """
@@ -327,14 +335,14 @@ def taken_in(
         if not isinstance(fixture, Fixture):
             raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
         try:
-            out.append(hardware.taken(fixture))
+            out.append(hardware.complete_fixture(fixture))
         except InputError as error:
             raise InputError(f"fixture {number} cannot be used: {error}.") from error
-    return with_claims(out, query, path)
+    return add_seating_claims(out, query, path)
 
 
-def keys_missing(head: Head) -> list[str]:
-    """A fault for every key of the form that is missing, for which a reader would take the usual value."""
+def find_missing_keys(head: Head) -> list[str]:
+    """Return a fault for every key of the form that is missing, for which a reader would take the usual value."""
     # Of a vise and a toolkit one is enough, a missing account is named in any case, and a fit decides
     # nothing. A departure counts in the tolerance of the faces, which is there.
     spared = {"toolkit" if head.toolkit is None else "vise", "proof", "tolerance.fit"}
@@ -370,16 +378,16 @@ def keys_missing(head: Head) -> list[str]:
     # Flat jaws are as high as they are.
     if head.program is not None and not hasattr(head.toolkit, "jaw_height"):
         stated.add("peg_height")
-    spared |= {row.name for row in declarations_of(SearchQuestion)} - stated
+    spared |= {row.name for row in list_declarations(SearchQuestion)} - stated
     spared |= set() if has_pairs else {"toolkit.clamps"}
     spared |= {"program"} if head.program is None else set()
-    return [f"the key {key} is missing" for key in head.not_given() if key not in spared]
+    return [f"the key {key} is missing" for key in head.list_keys_not_given() if key not in spared]
 
 
-def numbers_of(
+def read_counts_by_type(
     counts: Mapping[str, int] | None, key: str, types: Sequence[str], usual: Mapping[str, int] | None = None
 ) -> Mapping[str, int]:
-    """Numbers of fixtures by type; refuses those that are not of the toolkit's types."""
+    """Return the numbers of fixtures by type; refuse those that are not of the toolkit's types."""
     counts = usual if counts is None else counts
     if counts is None or set(counts) != set(types):
         raise InputError(
@@ -388,8 +396,8 @@ def numbers_of(
     return counts
 
 
-def turned_loops(loops: Sequence[Any], query: Query) -> list[str]:
-    """A fault for every loop without the material on its left, which makes its numbers ambiguous."""
+def find_turned_loops(loops: Sequence[Any], query: Query) -> list[str]:
+    """Return a fault for every loop without the material on its left, which makes its numbers ambiguous."""
     return [
         f"loop {index} does not have the material on its left"
         for index, (written, used) in enumerate(zip(loops, query.workpiece.loops, strict=True))

@@ -18,7 +18,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.verification.tolerances import ELASTIC_MODULUS, SHEAR_MODULUS, STATED_FORCE
 
-__all__ = ["PegBeam", "beams_of", "stated_force"]
+__all__ = ["PegBeam", "make_beams", "find_stated_force"]
 
 Rows = Sequence[tuple[float, float, float]]
 # A height that follows from where a peg touches is known no better than the pose of a file, in mm.
@@ -32,21 +32,21 @@ class PegBeam:
     diameter: arb
     height: arb
 
-    def gives_way(self, force: arb) -> arb:
-        """How far it gives way in mm under a force in N: by bending, and by shear."""
+    def compute_deflection(self, force: arb) -> arb:
+        """Return how far it gives way in mm under a force in N: by bending, and by shear."""
         radius = self.diameter / 2
         second_moment = arb.pi() * radius**4 / 4
         bends = force * self.height**3 / (3 * ELASTIC_MODULUS * second_moment)
         shears = force * self.height / (arb(9) / 10 * SHEAR_MODULUS * arb.pi() * radius**2)
         return bends + shears
 
-    def stress(self, force: arb) -> arb:
-        """The stress in MPa at its root, moment over section modulus."""
+    def compute_stress(self, force: arb) -> arb:
+        """Return the stress in MPa at its root, moment over section modulus."""
         return force * self.height / (arb.pi() * (self.diameter / 2) ** 3 / 4)
 
 
-def beams_of(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
-    """The beam of each contact, None of a clamp's tip and of a wall.
+def make_beams(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
+    """Return the beam of each contact, None of a clamp's tip and of a wall.
 
     None stands for all where it is not known how high pegs press, and where pegs are points.
     """
@@ -54,7 +54,7 @@ def beams_of(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
         return None
     beams = list[PegBeam | None]()
     for peg in fixture.pegs:
-        carrier = query.toolkit.carrier(peg.carrier)
+        carrier = query.toolkit.find_carrier(peg.carrier)
         if carrier.contact not in (ROUND_PIN, FLAT_PIN):
             beams.append(None)
             continue
@@ -65,13 +65,13 @@ def beams_of(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
     return beams if any(beams) else None
 
 
-def stated_force(query: Query) -> arb:
-    """The jaw force in N for which bending is stated."""
+def find_stated_force(query: Query) -> arb:
+    """Return the jaw force in N for which bending is stated."""
     return arb(STATED_FORCE if query.jaw_force is None else query.jaw_force)
 
 
 def run_of(number: int, point: tuple[float, float], query: Query) -> tuple[arb, arb] | None:
-    """The heights over which a peg at a point of the part can press on a face; None where none are known."""
+    """Return the heights over which a peg at a point of the part can press on a face; None where none are known."""
     if query.workpiece.solid is None:
         heights = [one for one in (query.thickness, query.peg_height) if one is not None]
         return arb(0), arb(min(heights))
@@ -81,19 +81,19 @@ def run_of(number: int, point: tuple[float, float], query: Query) -> tuple[arb, 
         band = every.bands[number]
         return None if band is None else (arb(band[0]), arb(band[1]))
     # Of the pieces of the face it touches the one past whose ends it is least.
-    places = {k: share_along(every.segments[k], point) for k in segments}
+    places = {k: compute_share_along(every.segments[k], point) for k in segments}
     touched = min(segments, key=lambda k: (abs(places[k] - 0.5) - 0.5) * every.segments[k].half_extent)
     rows, band = every.runs[touched], every.bands[touched]
     if not rows:
         return None if band is None else (arb(band[0]), arb(band[1]))
-    low, high = (neville(rows, places[touched], end) for end in (1, 2))
+    low, high = (interpolate_cubic(rows, places[touched], end) for end in (1, 2))
     if band is not None:
         low, high = min(low, band[0]), max(high, band[1])
     return arb(max(low, 0.0), FROM_POSE), arb(high, FROM_POSE)
 
 
-def share_along(segment: Segment, point: tuple[float, float]) -> float:
-    """Where a point is along a segment, as a share of it from where it begins."""
+def compute_share_along(segment: Segment, point: tuple[float, float]) -> float:
+    """Return where a point is along a segment, as a share of it from where it begins."""
     x, y = point
     if isinstance(segment, Line):
         (ax, ay), (bx, by) = segment.start, segment.end
@@ -107,8 +107,8 @@ def share_along(segment: Segment, point: tuple[float, float]) -> float:
     return 0.5 + runs * angle / (2 * half)
 
 
-def neville(rows: Rows, share: float, end: int) -> float:
-    """An end of a run at a share of its segment: of every four rows a cubic, by Neville's scheme."""
+def interpolate_cubic(rows: Rows, share: float, end: int) -> float:
+    """Return an end of a run at a share of its segment: of every four rows a cubic, by Neville's scheme."""
     first = 0
     while first + 6 < len(rows) and rows[first + 3][0] < share:
         first += 3

@@ -35,27 +35,27 @@ from workhold.verification.ball_geometry import (
     ArcSide,
     Point,
     Side,
+    compute_dot_product,
     cross,
-    dot,
-    exact_point,
-    least,
-    loop_sides,
-    minus,
-    turned,
+    find_least,
+    make_exact_point,
+    make_loop_sides,
+    subtract,
+    turn_vector,
 )
-from workhold.verification.contacts import BallContact, BallPose, contact_system, every_outline
+from workhold.verification.contacts import BallContact, BallPose, evaluate_contact_system, make_joint_outline
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.wall import WallContact
-from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
+from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
 
 __all__ = [
-    "broken_restriction",
-    "certified_zero",
-    "faces_avoided",
-    "gap_findings",
-    "proven_pose",
-    "written_pose",
-    "zone_distance",
+    "find_broken_restriction",
+    "enclose_zero",
+    "find_avoided_faces",
+    "judge_gaps",
+    "prove_pose",
+    "enclose_written_pose",
+    "compute_zone_distance",
 ]
 
 # Values (N x 1) and Jacobian (N x N) of a system on a box (N x 1) of unknowns.
@@ -64,8 +64,9 @@ System = Callable[[arb_mat], tuple[arb_mat, arb_mat]]
 MOST_STEPS = 12
 
 
-def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
-    """A proven enclosure of the one zero near a start, or None without a proof at the precision in force.
+def enclose_zero(system: System, start: Sequence[float]) -> list[arb] | None:
+    """Return a proven enclosure of the one zero near a start, or None without a proof at the precision in
+    force.
 
     Newton's method on midpoints finds a place; the proof does not depend on how it was found. The box around
     it has half the digits of the precision as its radius.
@@ -92,33 +93,36 @@ def certified_zero(system: System, start: Sequence[float]) -> list[arb] | None:
     return image.entries() if all(outer.contains_interior(k) for outer, k in inner) else None
 
 
-def written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
-    """All poses that agree with the file's, with travels in mm that agree with some likewise."""
+def enclose_written_pose(written: Pose, travels: Sequence[float]) -> BallPose:
+    """Return all poses that agree with the file's, with travels in mm that agree with some likewise."""
     off = arb(0, AGREEMENT)
     theta = (written.theta_deg + off) * arb.pi() / 180
-    return BallPose.of(theta, written.x + off, written.y + off, *(travel + off for travel in travels))
+    return BallPose.from_turn_and_place(
+        theta, written.x + off, written.y + off, *(travel + off for travel in travels)
+    )
 
 
-def gap_findings(touching: Sequence[tuple[str, BallContact, int]], around: BallPose) -> Iterator[Finding]:
-    """Whether any pose that agrees with the file's, and travels likewise, could touch all faces.
+def judge_gaps(touching: Sequence[tuple[str, BallContact, int]], around: BallPose) -> Iterator[Finding]:
+    """Check whether any pose that agrees with the file's, and travels likewise, could touch all faces.
 
     The gaps are enclosed over all of them at once; one that certainly is not the peg radius refutes.
     """
     for name, contact, face in touching:
-        off = contact.side.gap(contact.in_part(around)) - contact.radius
+        off = contact.side.compute_gap(contact.compute_center_in_part(around)) - contact.radius
         if off > 0 or off < 0:
             yield Finding(True, f"{name} is {number(off)} mm away from touching face {face}")
 
 
-def proven_pose(
+def prove_pose(
     contacts: Sequence[BallContact], written: Pose, travels: Mapping[str, float]
 ) -> tuple[BallPose | None, list[Finding]]:
-    """The proven solution of the contact equations near the file's pose, if any, and what is wrong with it.
+    """Return the proven solution of the contact equations near the file's pose, if any, and what is wrong
+    with it.
 
     ``travels`` in mm are those of the file, by what each is called.
     """
     values = [written.theta_deg, written.x, written.y, *travels.values()]
-    zero = certified_zero(partial(contact_system, contacts), [radians(written.theta_deg), *values[1:]])
+    zero = enclose_zero(partial(evaluate_contact_system, contacts), [radians(written.theta_deg), *values[1:]])
     if zero is None:
         words = "the contact equations have no single solution that can be proven near the pose in the file"
         return None, [Finding(False, words)]
@@ -129,22 +133,24 @@ def proven_pose(
     for (name, unit), derived, value in zip(names, found, values, strict=True):
         off = abs(derived - value)
         words = f"the {name} in the file is {number(off)} {unit} from the one that touches {touched}"
-        findings += rule(AGREEMENT - off, words)
-    return BallPose.of(*zero), findings
+        findings += judge_slack(AGREEMENT - off, words)
+    return BallPose.from_turn_and_place(*zero), findings
 
 
-def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """The restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
+def find_broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
+    """Return the restriction that a fixture breaks, in one sentence without a full stop; empty when it keeps all."""
     restrictions = query.restrictions
-    avoided = faces_avoided(query)
-    bare = faces_without_band(query.workpiece)
-    for name, peg in hardware.placed(fixture):
+    avoided = find_avoided_faces(query)
+    bare = find_faces_without_band(query.workpiece)
+    for name, peg in hardware.list_placed(fixture):
         if peg.face in bare:
             return f"{name} touches face {peg.face}, over which no upright face of the solid stands"
         if peg.face in avoided:
             return f"{name} touches face {peg.face}, which is to be avoided"
         reach = hardware.carriers[peg.carrier].body_radius - AGREEMENT
-        if any(zone_distance(zone, in_part(fixture, peg)) < reach for zone in restrictions.zones):
+        if any(
+            compute_zone_distance(zone, map_peg_to_part(fixture, peg)) < reach for zone in restrictions.zones
+        ):
             return f"{name} stands over a keep-out zone"
     theta = fixture.pose.theta_deg
     inside = (
@@ -152,16 +158,18 @@ def broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -
     )
     if restrictions.angles and not any(inside):
         return f"the part lies at {theta:g} degrees, which is outside the angles asked for"
-    broken = broken_at_wall(fixture, query, hardware, avoided | bare) or hardware.crowding(fixture)
-    return broken or untouched(fixture, query, hardware) or imprecise(fixture, query)
+    broken = find_restriction_broken_at_wall(
+        fixture, query, hardware, avoided | bare
+    ) or hardware.find_crowding(fixture)
+    return broken or find_untouched_face(fixture, query, hardware) or find_imprecision(fixture, query)
 
 
-def untouched(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """The first face that a fixture is to touch and does not, as :func:`broken_restriction` says it."""
+def find_untouched_face(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
+    """Return the first face that a fixture is to touch and does not, as :func:`find_broken_restriction` says it."""
     if not query.restrictions.touch:
         return ""
     touched = {face for peg in fixture.pegs for face in (peg.face, peg.beside) if face is not None}
-    for contact in hardware.contacts(fixture, every_outline(query.workpiece)):
+    for contact in hardware.make_contacts(fixture, make_joint_outline(query.workpiece)):
         touched |= set(contact.faces) if isinstance(contact, WallContact) else set()
     for face in query.workpiece.numbered.faces:
         if not set(face.segments).isdisjoint(query.restrictions.touch) and face.number not in touched:
@@ -169,16 +177,16 @@ def untouched(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
     return ""
 
 
-def imprecise(fixture: Fixture, query: Query) -> str:
-    """The location error of a fixture where it is larger than asked; the figure itself is derived elsewhere."""
+def find_imprecision(fixture: Fixture, query: Query) -> str:
+    """Return the location error of a fixture where it is larger than asked; the figure itself is derived elsewhere."""
     most, error = query.max_location_error, fixture.quality.get("location_error", inf)
     if most is None or error <= most + AGREEMENT:
         return ""
     return f"its location error is {error:g} mm, and at most {most:g} mm is asked for"
 
 
-def faces_without_band(workpiece: Workpiece) -> set[int]:
-    """Numbers of the faces with a segment that no upright face of the solid stands over."""
+def find_faces_without_band(workpiece: Workpiece) -> set[int]:
+    """Return the numbers of the faces with a segment that no upright face of the solid stands over."""
     bands = workpiece.numbered.bands
     return {
         face.number
@@ -187,8 +195,10 @@ def faces_without_band(workpiece: Workpiece) -> set[int]:
     }
 
 
-def faces_avoided(query: Query) -> set[int]:
-    """Numbers of the faces that are to be avoided, with those of other outlines of the solid's same faces."""
+def find_avoided_faces(query: Query) -> set[int]:
+    """Return the numbers of the faces that are to be avoided, with those of other outlines of the solid's
+    same faces.
+    """
     avoid, every = set(query.restrictions.avoid), query.workpiece.numbered
     if query.workpiece.outlines and every.over:
         cut = {face for segment in avoid for face in every.over[segment]}
@@ -196,48 +206,50 @@ def faces_avoided(query: Query) -> set[int]:
     return {face.number for face in every.faces if avoid.intersection(face.segments)}
 
 
-def broken_at_wall(fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]) -> str:
-    """The restriction on faces or zones that a wall breaks, as :func:`broken_restriction` says it."""
+def find_restriction_broken_at_wall(
+    fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]
+) -> str:
+    """Return the restriction on faces or zones that a wall breaks, as :func:`find_broken_restriction` says it."""
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
     for wall in hardware.walls:
         # Of a corner on a wall both faces are to be avoided.
-        contacts = hardware.contacts(fixture, every_outline(query.workpiece)) if avoided else []
+        contacts = hardware.make_contacts(fixture, make_joint_outline(query.workpiece)) if avoided else []
         for contact in contacts:
             if isinstance(contact, WallContact) and avoided.issuperset(contact.faces):
                 return (
                     f"the part lies on the {wall.noun} with face {contact.faces[0]}, which is to be avoided"
                 )
         for zone in query.restrictions.zones:
-            if zone_low(zone, cosine, sine) + fixture.pose.y < -AGREEMENT:
+            if compute_zone_low(zone, cosine, sine) + fixture.pose.y < -AGREEMENT:
                 return f"the {wall.noun} stands in a keep-out zone"
     return ""
 
 
-def in_part(fixture: Fixture, peg: Peg) -> Point:
-    """A peg's centre in the part's frame; in balls, and not by ``Pose``, which is what is checked."""
+def map_peg_to_part(fixture: Fixture, peg: Peg) -> Point:
+    """Return a peg's centre in the part's frame; in balls, and not by ``Pose``, which is what is checked."""
     sine, cosine = (arb(fixture.pose.theta_deg) / 180).sin_cos_pi()
-    return turned(exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)
+    return turn_vector(make_exact_point(peg.x - fixture.pose.x, peg.y - fixture.pose.y), cosine, -sine)
 
 
-def zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
-    """y in mm of the lowest point of a zone, once it is turned about the workpiece's origin."""
+def compute_zone_low(zone: Zone, cosine: arb, sine: arb) -> arb:
+    """Return y in mm of the lowest point of a zone, once it is turned about the workpiece's origin."""
     heights = []
-    for side in loop_sides(zone.loop):
-        heights += [turned(point, cosine, sine)[1] for point in (side.start, side.end)]
-        if isinstance(side, ArcSide) and not side.within((-sine, -cosine)) < 0:
-            heights.append(turned(side.center, cosine, sine)[1] - side.radius)
-    return least(heights)
+    for side in make_loop_sides(zone.loop):
+        heights += [turn_vector(point, cosine, sine)[1] for point in (side.start, side.end)]
+        if isinstance(side, ArcSide) and not side.measure_within((-sine, -cosine)) < 0:
+            heights.append(turn_vector(side.center, cosine, sine)[1] - side.radius)
+    return find_least(heights)
 
 
-def zone_distance(zone: Zone, point: Point) -> arb:
-    """Distance in mm from a point to a zone, 0 inside."""
-    sides = loop_sides(zone.loop)
-    nearest = least([side.distance(point) for side in sides])
+def compute_zone_distance(zone: Zone, point: Point) -> arb:
+    """Return the distance in mm from a point to a zone, 0 inside."""
+    sides = make_loop_sides(zone.loop)
+    nearest = find_least([side.compute_distance(point) for side in sides])
     # On the chord of an arc, as at a circle's centre, turns are not certain. Nearer than any side all is
     # inside, or none is.
     reach = nearest.abs_lower()
     for across, along in ((0.0, 0.0), (0.5, 0.25), (-0.25, 0.5)):
-        turns = turns_around(sides, (point[0] + across * reach, point[1] + along * reach))
+        turns = compute_turn_around(sides, (point[0] + across * reach, point[1] + along * reach))
         if turns > arb.pi():
             return arb(0)
         if turns < arb.pi():
@@ -245,19 +257,20 @@ def zone_distance(zone: Zone, point: Point) -> arb:
     return nearest
 
 
-def turns_around(sides: Sequence[Side], point: Point) -> arb:
-    """Angle in radians that closed sides turn around a point off them: a whole turn inside, none outside.
+def compute_turn_around(sides: Sequence[Side], point: Point) -> arb:
+    """Return the angle in radians that closed sides turn around a point off them: a whole turn inside, none
+    outside.
 
     A side turns as its chord does, and an arc by a whole turn more or less when the point lies between it and
     its chord.
     """
     total = arb(0)
     for side in sides:
-        a, b = minus(side.start, point), minus(side.end, point)
-        total += arb.atan2(cross(a, b), dot(a, b))
+        a, b = subtract(side.start, point), subtract(side.end, point)
+        total += arb.atan2(cross(a, b), compute_dot_product(a, b))
         if isinstance(side, ArcSide):
             beside = side.sign * cross(a, b) < 0
             ray = side.from_center(point)
-            if beside and dot(ray, ray) < side.radius * side.radius:
+            if beside and compute_dot_product(ray, ray) < side.radius * side.radius:
                 total += side.sign * 2 * arb.pi()
     return total

@@ -24,7 +24,7 @@ from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE
 from workhold.verification.rules.travel import WAYS, clamp_place
 
-__all__ = ["fixtures_of", "with_working_forces"]
+__all__ = ["read_fixtures", "add_working_forces"]
 
 # What locators stand on.
 PLATE = "plate"
@@ -35,129 +35,129 @@ class UnusableError(Exception):
     """A value of the wrong kind; the message goes behind the place."""
 
     @classmethod
-    def of(cls, item: Mapping[str, Any], key: str, kind: str) -> UnusableError:
-        """The error for a key of a JSON object that is missing, or not of a kind."""
+    def from_entry(cls, item: Mapping[str, Any], key: str, kind: str) -> UnusableError:
+        """Return the error for a key of a JSON object that is missing, or not of a kind."""
         return cls(f"{key} is {item[key]!r}, not {kind}" if key in item else f"the key {key} is missing")
 
 
-def fixtures_of(items: Iterable[Any], path: Path) -> list[Fixture]:
-    """Fixtures from their JSON objects; refuses the first one that cannot be used, counted from 1."""
+def read_fixtures(items: Iterable[Any], path: Path) -> list[Fixture]:
+    """Return the fixtures from their JSON objects; refuse the first one that cannot be used, counted from 1."""
     fixtures = []
     for number, item in enumerate(items, 1):
         try:
-            fixtures.append(fixture_from(item))
+            fixtures.append(read_fixture(item))
         except UnusableError as error:
             raise InputError(f"{path} cannot be verified: number {number} in fixtures: {error}.") from error
     return fixtures
 
 
-def fixture_from(item: Any) -> Fixture:
+def read_fixture(item: Any) -> Fixture:
     if not isinstance(item, dict):
         raise UnusableError("it is no fixture")
     is_pair, has_wall = "directions" in item, "wall" in item
-    directions = directions_from(item)
-    on_wall = wall_pegs(item["wall"], is_pair) if has_wall else ()
+    directions = read_directions(item)
+    on_wall = read_wall_pegs(item["wall"], is_pair) if has_wall else ()
     count = (5 if is_pair else 4) - 2 * has_wall
     pegs = item.get("pegs")
     if not isinstance(pegs, list) or len(pegs) != count or not all(isinstance(peg, dict) for peg in pegs):
         raise UnusableError(f"it does not have {NUMBERS[count] if is_pair else 'four'} pegs")
-    forces = [two_numbers(peg, "force") for peg in pegs] if is_pair else []
+    forces = [read_two_numbers(peg, "force") for peg in pegs] if is_pair else []
     if is_pair and has_wall:
-        forces[1:1] = wall_reactions(item["wall"])
-    taken = [peg_from({**peg, "force": 0.0} if is_pair else peg, directions) for peg in pegs]
+        forces[1:1] = read_wall_reactions(item["wall"])
+    taken = [read_peg({**peg, "force": 0.0} if is_pair else peg, directions) for peg in pegs]
     # The ends on a wall stand behind what stands still in holes.
     first = sum(peg.get("role") != "jaw" for peg in pegs[:1])
     fixture = Fixture(
-        word(item, "type"),
+        read_word(item, "type"),
         (*taken[:first], *on_wall, *taken[first:]),
-        pose_from(item),
+        read_pose(item),
         # How far a clamp has travelled follows from its place.
-        0.0 if directions else real(item, "jaw_separation"),
-        quality_from(item),
+        0.0 if directions else read_real(item, "jaw_separation"),
+        read_quality(item),
         " ".join(directions) or None,
         passing=item.get(PROGRAM_FIGURE.key),
         asking=item.get("program_forces"),
     )
     if is_pair:
-        low, high = two_numbers(item, "ratio", least=1)
-        pair = Pair((0.0, 0.0), (low, high), tuple(forces), whole(item, "pairs"))
-        fixture = with_working_forces(fixture, pair)
-    fixture = with_flats(fixture, item["flats"]) if "flats" in item else fixture
+        low, high = read_two_numbers(item, "ratio", least=1)
+        pair = Pair((0.0, 0.0), (low, high), tuple(forces), read_whole_number(item, "pairs"))
+        fixture = add_working_forces(fixture, pair)
+    fixture = add_flat_directions(fixture, item["flats"]) if "flats" in item else fixture
     # What its fields say is looked at where the query is known.
     return evolve(fixture, seating=item["seating"]) if "seating" in item else fixture
 
 
-def with_flats(fixture: Fixture, flats: Any) -> Fixture:
-    """A fixture with which way the flats of its pegs in holes look, in degrees, null for none."""
+def add_flat_directions(fixture: Fixture, flats: Any) -> Fixture:
+    """Return a fixture with which way the flats of its pegs in holes look, in degrees, null for none."""
     standing = [place for place, peg in enumerate(fixture.pegs) if not peg.is_on_wall]
     if not isinstance(flats, list) or len(flats) != len(standing):
         raise UnusableError("flats is not one number or null for each peg")
     pegs = list(fixture.pegs)
     for place, angle in zip(standing, flats, strict=True):
-        looks = None if angle is None else real({"number in flats": angle}, "number in flats")
+        looks = None if angle is None else read_real({"number in flats": angle}, "number in flats")
         pegs[place] = evolve(pegs[place], flat_deg=looks)
     return evolve(fixture, pegs=tuple(pegs))
 
 
-def with_working_forces(fixture: Fixture, pair: Pair) -> Fixture:
-    """A fixture held by a pair of clamps, with forces per unit of both clamps' at the working ratio."""
+def add_working_forces(fixture: Fixture, pair: Pair) -> Fixture:
+    """Return a fixture held by a pair of clamps, with forces per unit of both clamps' at the working ratio."""
     ratio = pair.working_ratio
     forces = [(one + ratio * other) / (1 + ratio) for one, other in pair.reactions]
     pegs = tuple(evolve(p, force=f) for p, f in zip(fixture.pegs, forces, strict=True))
     return evolve(fixture, pegs=pegs, pair=pair)
 
 
-def directions_from(item: Mapping[str, Any]) -> list[str]:
-    """The directions of the clamps of a fixture, none, one or two."""
+def read_directions(item: Mapping[str, Any]) -> list[str]:
+    """Return the directions of the clamps of a fixture, none, one or two."""
     if "directions" in item:
         directions: Any = item["directions"]
         is_two = isinstance(directions, list) and len(directions) == 2
         if not is_two or any(one not in list(WAYS) for one in directions):
             raise UnusableError(f"its directions are not two of {', '.join(WAYS)}")
         return list(directions)
-    direction = None if item.get("direction") is None else word(item, "direction")
+    direction = None if item.get("direction") is None else read_word(item, "direction")
     if direction not in (None, *WAYS):
         raise UnusableError(f"its direction is not {' or '.join(WAYS)}")
     return [] if direction is None else [direction]
 
 
-def pose_from(item: Mapping[str, Any]) -> Pose:
+def read_pose(item: Mapping[str, Any]) -> Pose:
     pose = item.get("pose")
     if not isinstance(pose, dict):
         raise UnusableError("it has no pose")
-    return Pose(real(pose, "theta_deg"), real(pose, "x"), real(pose, "y"))
+    return Pose(read_real(pose, "theta_deg"), read_real(pose, "x"), read_real(pose, "y"))
 
 
-def quality_from(item: Mapping[str, Any]) -> dict[str, float]:
+def read_quality(item: Mapping[str, Any]) -> dict[str, float]:
     quality = item.get("quality")
     if not isinstance(quality, dict):
         raise UnusableError("it has no quality")
     known = (*FIGURES, PROGRAM_FIGURE)
-    return {figure.key: real(quality, figure.key) for figure in known if figure.key in quality}
+    return {figure.key: read_real(quality, figure.key) for figure in known if figure.key in quality}
 
 
-def two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:
-    """Two numbers of a JSON object; of those after the first ``least`` a null is infinite."""
+def read_two_numbers(item: Mapping[str, Any], key: str, least: int = 2) -> tuple[float, float]:
+    """Return two numbers of a JSON object; of those after the first ``least`` a null is infinite."""
     values = item.get(key)
     if not isinstance(values, list) or len(values) != 2:
-        raise UnusableError.of(item, key, "two numbers")
+        raise UnusableError.from_entry(item, key, "two numbers")
     one, other = (
-        inf if place >= least and value is None else real({key: value}, key)
+        inf if place >= least and value is None else read_real({key: value}, key)
         for place, value in enumerate(values)
     )
     return one, other
 
 
-def wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
-    """The forces of the two ends of the contact with a wall under each of two clamps."""
+def read_wall_reactions(wall: Mapping[str, Any]) -> list[tuple[float, float]]:
+    """Return the forces of the two ends of the contact with a wall under each of two clamps."""
     forces = wall.get("forces")
     if not isinstance(forces, list) or len(forces) != 2:
         raise UnusableError("the forces of its wall are not two pairs of numbers")
-    return [two_numbers({"forces of its wall": pair}, "forces of its wall") for pair in forces]
+    return [read_two_numbers({"forces of its wall": pair}, "forces of its wall") for pair in forces]
 
 
-def wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
-    """The two ends of the contact with a wall from a JSON object; with two clamps forces stand elsewhere."""
+def read_wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
+    """Return the two ends of the contact with a wall from a JSON object; with two clamps forces stand elsewhere."""
     if not isinstance(item, dict):
         raise UnusableError("its wall is not given by places, segments and forces")
     pairs = []
@@ -169,27 +169,40 @@ def wall_pegs(item: Any, is_pair: bool) -> tuple[Peg, ...]:
     *places, faces, shares = pairs
     ends = zip(places, ("first", "second"), strict=True)
     return tuple(
-        Peg(WALL, 0, 0, real(at, "first"), real(at, "second"), whole(faces, k), real(shares, k))
+        Peg(
+            WALL,
+            0,
+            0,
+            read_real(at, "first"),
+            read_real(at, "second"),
+            read_whole_number(faces, k),
+            read_real(shares, k),
+        )
         for at, k in ends
     )
 
 
-def peg_from(item: Mapping[str, Any], directions: list[str]) -> Peg:
-    """A peg from its JSON object; of two clamps each has its direction, which else is that of the fixture."""
+def read_peg(item: Mapping[str, Any], directions: list[str]) -> Peg:
+    """Return a peg from its JSON object; of two clamps each has its direction, which else is that of the fixture."""
     if not directions:
-        column, row, segment = (whole(item, key) for key in ("column", "row", "segment"))
-        x, y, force = (real(item, key) for key in ("x", "y", "force"))
-        jaw = "jaw" if item.get("role") == "jaw" else word(item, "jaw")
+        column, row, segment = (read_whole_number(item, key) for key in ("column", "row", "segment"))
+        x, y, force = (read_real(item, key) for key in ("x", "y", "force"))
+        jaw = "jaw" if item.get("role") == "jaw" else read_word(item, "jaw")
         return Peg(jaw, column, row, x, y, segment, force)
     direction = (
-        word(item, "direction") if len(directions) > 1 and item.get("role") == "clamp" else directions[0]
+        read_word(item, "direction") if len(directions) > 1 and item.get("role") == "clamp" else directions[0]
     )
     if direction not in WAYS:
         raise UnusableError(f"the direction of a clamp is not {' or '.join(WAYS)}")
-    role, line = word(item, "role"), "row" if direction.endswith("x") else "column"
-    contact = real(item, "x"), real(item, "y"), whole(item, "segment"), real(item, "force")
+    role, line = read_word(item, "role"), "row" if direction.endswith("x") else "column"
+    contact = (
+        read_real(item, "x"),
+        read_real(item, "y"),
+        read_whole_number(item, "segment"),
+        read_real(item, "force"),
+    )
     if role == "locator":
-        return Peg(PLATE, whole(item, "column"), whole(item, "row"), *contact)
+        return Peg(PLATE, read_whole_number(item, "column"), read_whole_number(item, "row"), *contact)
     if role != "clamp":
         raise UnusableError("the role of a peg is neither locator nor clamp")
     if "hole" not in item:
@@ -199,33 +212,33 @@ def peg_from(item: Mapping[str, Any], directions: list[str]) -> Peg:
         if not isinstance(hole, list) or len(hole) != 2:
             raise UnusableError("the hole of its clamp is not a column and a row")
         numbers = {"column": hole[0], "row": hole[1]}
-        place = {name: whole(numbers, name) for name in numbers}
-    if hole is not None and place[line] != whole(item, line):
+        place = {name: read_whole_number(numbers, name) for name in numbers}
+    if hole is not None and place[line] != read_whole_number(item, line):
         raise UnusableError(f"the {line} of its clamp is not that of its hole")
-    place[line] = whole(item, line)
+    place[line] = read_whole_number(item, line)
     column, row = place["column"], place["row"]
     called = clamp_place(PLATE, direction, column, row, hole is not None) if min(column, row) >= 0 else None
     return Peg(f"clamp {direction}", column, row, *contact, called)
 
 
-def word(item: Mapping[str, Any], key: str) -> str:
+def read_word(item: Mapping[str, Any], key: str) -> str:
     value = item.get(key)
     if not isinstance(value, str):
-        raise UnusableError.of(item, key, "a word")
+        raise UnusableError.from_entry(item, key, "a word")
     return value
 
 
-def real(item: Mapping[str, Any], key: str) -> float:
-    """A finite number of a JSON object."""
+def read_real(item: Mapping[str, Any], key: str) -> float:
+    """Return a finite number of a JSON object."""
     value: Any = item.get(key)
     if type(value) not in (int, float) or abs(value) > 1e300 or not isfinite(value):
-        raise UnusableError.of(item, key, "a number")
+        raise UnusableError.from_entry(item, key, "a number")
     return float(value)
 
 
-def whole(item: Mapping[str, Any], key: str) -> int:
-    """A whole number of a JSON object of a sensible size."""
+def read_whole_number(item: Mapping[str, Any], key: str) -> int:
+    """Return a whole number of a JSON object of a sensible size."""
     value = item.get(key)
     if type(value) is not int or abs(value) > 2**31:
-        raise UnusableError.of(item, key, "a whole number")
+        raise UnusableError.from_entry(item, key, "a whole number")
     return value

@@ -37,14 +37,14 @@ from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.rules.travel import (
     OPPOSITE,
     WAYS,
-    direction_of,
-    directions_of,
+    find_clamp_line,
+    find_direction,
     is_along_x,
-    line_of,
+    list_directions,
 )
 from workhold.verification.tolerances import SAME
 
-__all__ = ["Key", "KnownFixtures", "PartRotations", "Place", "pattern_faults", "stance"]
+__all__ = ["Key", "KnownFixtures", "PartRotations", "Place", "find_pattern_faults", "describe_stance"]
 
 Key = tuple[Any, ...]
 # Orientation, place in the workpiece's frame of the first peg, and how far from it each other group of pegs
@@ -72,9 +72,11 @@ class PartRotations:
     is_certain: bool
 
     @classmethod
-    def of(cls, workpiece: Workpiece) -> PartRotations:
+    def from_workpiece(cls, workpiece: Workpiece) -> PartRotations:
         every = enumerate(workpiece.every_outline)
-        marks = np.array([[*marks_of(face.segment), number] for number, one in every for face in one.faces])
+        marks = np.array(
+            [[*list_face_marks(face.segment), number] for number, one in every for face in one.faces]
+        )
         center = marks[:, 0].mean()
         marks[:, :3] -= center
         most = order_of(marks, PERHAPS * SAME)
@@ -87,8 +89,8 @@ class PartRotations:
         return [tau * k / self.order for k in range(1, self.order)]
 
 
-def marks_of(face: Segment) -> list[complex]:
-    """Middle, start, end and radius of a face, negative in a hollow; of a whole circle thrice its centre."""
+def list_face_marks(face: Segment) -> list[complex]:
+    """Return the middle, start, end and radius of a face, negative in a hollow; of a whole circle thrice its centre."""
     radius = face.sign * face.radius if isinstance(face, Arc) else 0.0
     points = (
         [face.center] * 3 if isinstance(face, Arc) and face.is_full else [face.at(0.0), face.start, face.end]
@@ -97,7 +99,7 @@ def marks_of(face: Segment) -> list[complex]:
 
 
 def order_of(marks: NDArray[np.complex128], off: float) -> int:
-    """The most rotations that carry each of the marks (N, 5) about 0 to within so many mm of others.
+    """Return the most rotations that carry each of the marks (N, 5) about 0 to within so many mm of others.
 
     The last of a face's marks is the number of its outline, which stays.
     """
@@ -107,7 +109,7 @@ def order_of(marks: NDArray[np.complex128], off: float) -> int:
 
 
 def has_image(one: NDArray[np.complex128], order: int, marks: NDArray[np.complex128], off: float) -> bool:
-    """Whether one of the marks (N, 5) is where a part of a turn carries some (5,)."""
+    """Return whether one of the marks (N, 5) is where a part of a turn carries some (5,)."""
     turned = one * np.array([*[np.exp(2j * pi / order)] * 3, 1.0, 1.0])
     return bool((np.abs(marks - turned).max(axis=1) <= off).any())
 
@@ -136,51 +138,53 @@ class KnownFixtures:
     known: dict[Key, list[tuple[int, Place]]] = field(factory=dict, init=False)
 
     @classmethod
-    def of(cls, turning: PartRotations, hardware: ToolkitRules) -> KnownFixtures:
-        """Nothing seen yet of fixtures of a workpiece that is carried onto itself in these ways."""
+    def make_empty(cls, turning: PartRotations, hardware: ToolkitRules) -> KnownFixtures:
+        """Return nothing seen yet of fixtures of a workpiece that is carried onto itself in these ways."""
         return cls(hardware, turning.angles, turning.center)
 
     def add(self, index: int, fixture: Fixture) -> int | None:
-        """Adds a fixture that is not refuted, and returns the index of an earlier one that is the same."""
+        """Add a fixture that is not refuted, and return the index of an earlier one that is the same."""
         first, alone = self.find(fixture), True
-        for key, place in patterns(fixture, self.hardware):
+        for key, place in list_patterns(fixture, self.hardware):
             known = self.known.setdefault(key, [])
-            images = [self.turned(place, angle) for angle in self.rotations]
-            alone &= not any(same(a, b, TURNED) for a in images for k, b in known if k != index)
+            images = [self.turn_place(place, angle) for angle in self.rotations]
+            alone &= not any(are_same_place(a, b, TURNED) for a in images for k, b in known if k != index)
             known.append((index, place))
         if first is None and alone:
             self.sets[fixture.type] = self.sets.get(fixture.type, 0) + 1
         return first
 
     def find(self, fixture: Fixture) -> int | None:
-        """The index of a fixture taken in that is the same, if any."""
-        named = ((place, self.known.get(key, ())) for key, place in patterns(fixture, self.hardware))
-        return next((k for place, known in named for k, other in known if same(place, other)), None)
+        """Return the index of a fixture taken in that is the same, if any."""
+        named = ((place, self.known.get(key, ())) for key, place in list_patterns(fixture, self.hardware))
+        return next((k for place, known in named for k, other in known if are_same_place(place, other)), None)
 
-    def turned(self, place: Place, angle: float) -> Place:
-        """The place of a workpiece that lies the same way after it is turned about its own centre."""
+    def turn_place(self, place: Place, angle: float) -> Place:
+        """Return the place of a workpiece that lies the same way after it is turned about its own centre."""
         x, y = place[1] - self.center[0], place[2] - self.center[1]
         turned_x, turned_y = cos(angle) * x - sin(angle) * y, sin(angle) * x + cos(angle) * y
         return place[0] - angle, self.center[0] + turned_x, self.center[1] + turned_y, *place[3:]
 
 
-def patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Place]]:
-    """Each pattern that names a fixture.
+def list_patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Place]]:
+    """Yield each pattern that names a fixture.
 
     There are two where a half turn of the toolkit leaves the holes as they are, and none where the pegs are
     not those of a fixture.
     """
     there = {peg.carrier for peg in fixture.pegs}
-    clamps = [direction_of(peg) for peg in fixture.pegs if direction_of(peg)]
-    if tuple(clamps) != directions_of(fixture) or not there.issuperset(one.name for one in hardware.lattices):
+    clamps = [find_direction(peg) for peg in fixture.pegs if find_direction(peg)]
+    if tuple(clamps) != list_directions(fixture) or not there.issuperset(
+        one.name for one in hardware.lattices
+    ):
         return iter(())
-    named = [pattern(fixture, hardware, sign) for sign in ((1, -1) if hardware.half_turns else (1,))]
+    named = [make_pattern(fixture, hardware, sign) for sign in ((1, -1) if hardware.half_turns else (1,))]
     least = min(key for key, _ in named)
     return ((key, place) for key, place in named if key == least)
 
 
-def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, Place]:
-    """The pattern as it is (sign 1) or after half a turn of the toolkit (-1), which swaps two jaws.
+def make_pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, Place]:
+    """Return the pattern as it is (sign 1) or after half a turn of the toolkit (-1), which swaps two jaws.
 
     Columns count from the first of each carrier, rows from the lowest; beside a wall that and what stands
     still keep theirs. Clamps are their directions and lines, of which the lines do not count where one pair
@@ -198,9 +202,9 @@ def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, P
         anchors.append(pegs[places[0][2]])
     first, rest = anchors[0], anchors[1:]
     clamps = []
-    for clamp in (peg for peg in fixture.pegs if direction_of(peg)):
-        direction, along_x = direction_of(clamp), is_along_x(clamp)
-        line = sign * line_of(clamp) - (lowest if along_x else firsts[0])
+    for clamp in (peg for peg in fixture.pegs if find_direction(peg)):
+        direction, along_x = find_direction(clamp), is_along_x(clamp)
+        line = sign * find_clamp_line(clamp) - (lowest if along_x else firsts[0])
         ahead = sign * (clamp.x - first.x if along_x else clamp.y - first.y)
         clamps.append((list(WAYS).index(direction if sign > 0 else OPPOSITE[direction]), line, ahead))
     clamps.sort()
@@ -221,8 +225,8 @@ def pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[Key, P
     return (lines, tuple(holes), above), (*place, *apart, *(ahead for *_, ahead in clamps if alone))
 
 
-def same(a: Place, b: Place, most: float = SAME) -> bool:
-    """Whether two places of the workpiece agree."""
+def are_same_place(a: Place, b: Place, most: float = SAME) -> bool:
+    """Return whether two places of the workpiece agree."""
     turn = (a[0] - b[0] + pi) % tau - pi
     return abs(turn) <= most and all(abs(p - q) <= most for p, q in zip(a[1:], b[1:], strict=True))
 
@@ -231,15 +235,15 @@ def same(a: Place, b: Place, most: float = SAME) -> bool:
 SAME_SEAT = 1e-5
 
 
-def pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
-    """A fault for the first fixture that is not among the seats of one whose pegs stand as its own do."""
+def find_pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[str]:
+    """Yield a fault for the first fixture that is not among the seats of one whose pegs stand as its own do."""
     if not query.toolkit.closes_at_once:
         return
     seated = [fixture for fixture in fixtures[: query.seating or 0] if fixture.seating is not None]
     if seated and not all(map(ToolkitRules(query.toolkit).has_carriers, fixtures)):
         # What stands on something else is refuted, and its pegs stand as nothing does.
         return
-    stances = [stance(fixture, query.toolkit) for fixture in (fixtures if seated else ())]
+    stances = [describe_stance(fixture, query.toolkit) for fixture in (fixtures if seated else ())]
     patterns: dict[tuple[Any, ...], list[int]] = {stances[number].key: [] for number in range(len(seated))}
     for place, other in enumerate(stances):
         if (found := patterns.get(other.key)) is not None:
@@ -282,13 +286,13 @@ class Stance:
     met: tuple[float, ...]
 
 
-def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
+def describe_stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
     by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
-    still = [peg for peg in by_place if toolkit.carrier(peg.carrier).travel is None]
+    still = [peg for peg in by_place if toolkit.find_carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]
     tip = moved[0]
     first_x, first_y = (still[0].x, still[0].y) if still else (tip.x, 0.0)
-    carrier = toolkit.carrier(tip.carrier)
+    carrier = toolkit.find_carrier(tip.carrier)
     assert carrier.travel is not None
     ux, uy = carrier.travel.unit
 
@@ -306,7 +310,7 @@ def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
         x, y = carrier.place(tip.column, tip.row)
         numbers += [x - first_x, y - first_y] if carrier.measure == "stroke" else []
         numbers += [first_y] if WALL_END in toolkit.contacts else []
-        reach = [carrier.peg_radius + toolkit.carrier(peg.carrier).peg_radius for peg in still]
+        reach = [carrier.peg_radius + toolkit.find_carrier(peg.carrier).peg_radius for peg in still]
         met = [
             along(peg)
             for peg, near in zip(still, reach, strict=True)
@@ -317,7 +321,7 @@ def stance(fixture: Fixture, toolkit: Toolkit) -> Stance:
 
 
 def is_seat(seat: Mapping[str, Any], pose: Mapping[str, float], difference: float) -> bool:
-    """Whether a seat is on four faces, in a pose and at a difference."""
+    """Return whether a seat is on four faces, in a pose and at a difference."""
     turn = (seat["pose"]["theta_deg"] - pose["theta_deg"] + 180.0) % 360.0 - 180.0
     away = max(abs(seat["pose"][name] - pose[name]) for name in ("x", "y"))
     kind = seat["kind"] == "fixture" and not seat["mirrored"]

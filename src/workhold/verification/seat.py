@@ -27,8 +27,21 @@ from attrs import frozen
 from flint import arb, arb_mat
 
 from workhold.model.fixture import Pair
-from workhold.verification.ball_geometry import Point, cross, dot, largest, least, turned
-from workhold.verification.contacts import BallContact, BallPose, inner, inverted, parts_spared
+from workhold.verification.ball_geometry import (
+    Point,
+    compute_dot_product,
+    cross,
+    find_largest,
+    find_least,
+    turn_vector,
+)
+from workhold.verification.contacts import (
+    BallContact,
+    BallPose,
+    bound_relative_error,
+    compute_inner_product,
+    invert_matrix,
+)
 from workhold.verification.tolerances import (
     LEAST_PUSH,
     LEAST_SEAT,
@@ -36,9 +49,9 @@ from workhold.verification.tolerances import (
     MOST_FORCE,
     NO_REACTION,
     Finding,
+    judge_slack,
+    judge_written_number,
     number,
-    rule,
-    written,
 )
 
 __all__ = [
@@ -48,8 +61,8 @@ __all__ = [
     "Push",
     "Ratio",
     "SeatBalance",
-    "closure_margin",
-    "ratio_of",
+    "compute_closure_margin",
+    "find_ratio",
 ]
 
 LOCATORS = 3
@@ -70,17 +83,21 @@ class LocatorWrenches:
     normals: Sequence[Point]
 
     @classmethod
-    def of(cls, contacts: Sequence[BallContact], pose: BallPose) -> LocatorWrenches:
-        """The seat of three locators, or of the two ends of a wall's contact and one."""
+    def from_contacts(cls, contacts: Sequence[BallContact], pose: BallPose) -> LocatorWrenches:
+        """Return the seat of three locators, or of the two ends of a wall's contact and one."""
         return cls(
-            [contact.in_part(pose) for contact in contacts], [contact.outward(pose) for contact in contacts]
+            [contact.compute_center_in_part(pose) for contact in contacts],
+            [contact.compute_outward_normal(pose) for contact in contacts],
         )
 
-    def push(self, contact: BallContact, pose: BallPose) -> Push:
-        """What a clamp does here; it pushes along -n, and clamps against its way."""
-        point = contact.in_part(pose)
-        normal = contact.side.outward(point)
-        return Push(self.taken(point, normal), dot(turned(contact.way, pose.cosine, -pose.sine), normal))
+    def make_push(self, contact: BallContact, pose: BallPose) -> Push:
+        """Return what a clamp does here; it pushes along -n, and clamps against its way."""
+        point = contact.compute_center_in_part(pose)
+        normal = contact.side.compute_outward_normal(point)
+        return Push(
+            self.compute_reactions(point, normal),
+            compute_dot_product(turn_vector(contact.way, pose.cosine, -pose.sine), normal),
+        )
 
     @cached_property
     def wrenches(self) -> list[tuple[arb, arb, arb]]:
@@ -92,8 +109,8 @@ class LocatorWrenches:
         """The determinant of the three wrenches, in mm."""
         return arb_mat(self.wrenches).det()
 
-    def taken(self, point: Point, normal: Point) -> tuple[arb, arb, arb]:
-        """What the locators take up per unit of force on the face of a clamp at a point, by Cramer's rule."""
+    def compute_reactions(self, point: Point, normal: Point) -> tuple[arb, arb, arb]:
+        """Return what the locators take up per unit of force on the face of a clamp at a point, by Cramer's rule."""
         own = (*normal, cross(point, normal))
         replaced = (arb_mat([*self.wrenches[:k], own, *self.wrenches[k + 1 :]]) for k in range(LOCATORS))
         a, b, c = (-matrix.det() / self.determinant for matrix in replaced)
@@ -121,7 +138,7 @@ class Push:
     @property
     def most(self) -> arb:
         """The most that a locator takes up."""
-        return largest([abs(entry) for entry in self.taken])
+        return find_largest([abs(entry) for entry in self.taken])
 
     @cached_property
     def alone(self) -> arb:
@@ -162,11 +179,11 @@ class Ratio:
         return cosine / (cosine + sine), sine / (cosine + sine)
 
 
-def ratio_of(one: Push, other: Push) -> Ratio | None:
-    """The interval for two clamps; None where a reaction is exactly at the edge of what counts as none."""
+def find_ratio(one: Push, other: Push) -> Ratio | None:
+    """Return the interval for two clamps; None where a reaction is exactly at the edge of what counts as none."""
     low, high = arb(0), None
     for first, second in zip(one.reactions, other.reactions, strict=True):
-        a, b = settled(first), settled(second)
+        a, b = round_tiny_reaction_to_zero(first), round_tiny_reaction_to_zero(second)
         if a is None or b is None:
             return None
         if b > 0:
@@ -178,14 +195,14 @@ def ratio_of(one: Push, other: Push) -> Ratio | None:
     return Ratio(low, high)
 
 
-def settled(reaction: arb) -> arb | None:
-    """A reaction, 0 for one that counts as none; None where that is not certain."""
+def round_tiny_reaction_to_zero(reaction: arb) -> arb | None:
+    """Return a reaction, 0 for one that counts as none; None where that is not certain."""
     size = abs(reaction)
     return arb(0) if size < NO_REACTION else reaction if size > NO_REACTION else None
 
 
-def closure_margin(one: Push, other: Push) -> arb:
-    """The largest least entry of null vectors of all five wrenches that sum to 1; 0 or less for none.
+def compute_closure_margin(one: Push, other: Push) -> arb:
+    """Return the largest least entry of null vectors of all five wrenches that sum to 1; 0 or less for none.
 
     They are (1 - s) (a1, 1, 0) + s (a2, 0, 1), scaled. Over 0 <= s <= 1 every entry is linear before scaling,
     so the least of them is the largest where two are equal. Two whose difference may be constant are equal
@@ -204,7 +221,7 @@ def closure_margin(one: Push, other: Push) -> arb:
         entries = [p + share * (q - p) for p, q in ends]
         total = sum(entries, arb(0))
         if total > 0:
-            best = best.max(least(entries) / total)
+            best = best.max(find_least(entries) / total)
     return best
 
 
@@ -228,14 +245,18 @@ class SeatBalance:
     known_ratio: Ratio | None
 
     @classmethod
-    def of(cls, contacts: Sequence[BallContact], pose: BallPose) -> SeatBalance:
-        """The balance of three contacts that stand still and then two clamps."""
-        seat = LocatorWrenches.of(contacts[:LOCATORS], pose)
-        first, second = (seat.push(contact, pose) for contact in contacts[LOCATORS:])
+    def from_contacts(cls, contacts: Sequence[BallContact], pose: BallPose) -> SeatBalance:
+        """Return the balance of three contacts that stand still and then two clamps."""
+        seat = LocatorWrenches.from_contacts(contacts[:LOCATORS], pose)
+        first, second = (seat.make_push(contact, pose) for contact in contacts[LOCATORS:])
         points, normals = zip(
-            *((contact.in_part(pose), contact.outward(pose)) for contact in contacts), strict=True
+            *(
+                (contact.compute_center_in_part(pose), contact.compute_outward_normal(pose))
+                for contact in contacts
+            ),
+            strict=True,
         )
-        return cls(points, normals, seat, (first, second), ratio_of(first, second))
+        return cls(points, normals, seat, (first, second), find_ratio(first, second))
 
     @property
     def ratio(self) -> Ratio:
@@ -243,32 +264,32 @@ class SeatBalance:
         assert self.known_ratio is not None
         return self.known_ratio
 
-    def push_findings(self, wrench_length: float) -> Iterator[Finding]:
-        """Whether the locators fix the pose, both clamps push, and neither holds the part alone; L in mm."""
+    def judge_pushes(self, wrench_length: float) -> Iterator[Finding]:
+        """Check whether the locators fix the pose, both clamps push, and neither holds the part alone; L in mm."""
         spanned = abs(self.seat.determinant) / wrench_length
-        yield from rule(
+        yield from judge_slack(
             spanned - LEAST_SEAT,
             f"the locators do not fix the pose: their wrenches have a determinant of only {number(spanned)}",
         )
         for name, push in zip(CLAMPS, self.pushes, strict=True):
-            yield from rule(
+            yield from judge_slack(
                 push.push - LEAST_PUSH,
                 f"{name} does not push the part: its share is {number(push.push)}",
                 f"the push of {name} is exactly at its limit",
             )
-            yield from rule(
+            yield from judge_slack(
                 MOST_FORCE * push.push - push.most,
                 f"{name} presses a locator with {number(push.most / push.push)} times its own force",
                 f"the force of a locator under {name} is exactly at its limit",
             )
-            yield from rule(
+            yield from judge_slack(
                 NO_REACTION - push.alone,
                 f"{name} holds the part without the other: its least share is {number(push.alone)}",
                 f"whether {name} holds the part without the other is exactly at its limit",
             )
 
-    def closure_findings(self) -> Iterator[Finding]:
-        """Whether both clamps together press the part against all locators."""
+    def judge_closure(self) -> Iterator[Finding]:
+        """Check whether both clamps together press the part against all locators."""
         if self.known_ratio is None:
             yield Finding(False, "a locator's force is exactly at the edge of what counts as none")
             return
@@ -277,7 +298,7 @@ class SeatBalance:
         if not freedom > 0:
             yield Finding(bool(freedom < 0) or bool(self.margin < LEAST_SHARE), words)
             return
-        yield from rule(
+        yield from judge_slack(
             self.margin - LEAST_SHARE,
             f"the clamps do not hold the part: the closure margin is {number(self.margin)}",
             "the closure margin is exactly at its limit",
@@ -304,12 +325,12 @@ class SeatBalance:
 
     @cached_property
     def margin(self) -> arb:
-        return closure_margin(*self.pushes)
+        return compute_closure_margin(*self.pushes)
 
     @cached_property
     def inverse(self) -> list[list[arb]] | None:
         """The inverse of the locators' wrenches, which alone fix the part; None where there may be none."""
-        return inverted([list(wrench) for wrench in self.seat.wrenches])
+        return invert_matrix([list(wrench) for wrench in self.seat.wrenches])
 
     @property
     def responses(self) -> list[list[arb]]:
@@ -317,28 +338,38 @@ class SeatBalance:
         return [[*row, arb(0), arb(0)] for row in self.inverse or ()]
 
     def number_findings(self, pair: Pair, names: Sequence[str]) -> Iterator[Finding]:
-        """Whether the reactions of pegs of some names and the ends of the ratio in the file are these."""
-        part = parts_spared(self.forces)
+        """Check whether the reactions of pegs of some names and the ends of the ratio in the file are these."""
+        part = bound_relative_error(self.forces)
         for name, said, derived in zip(names, pair.reactions, self.reactions, strict=True):
             for clamp, value, force in zip(CLAMPS, said, derived, strict=True):
-                yield from written(
+                yield from judge_written_number(
                     f"the force of {name} under {clamp}", value, force, part * (1 + abs(force))
                 )
         # The ends follow from reactions that are off.
         (low, high), ratio = pair.ratio, self.ratio
         least = [abs(b) for _, b in self.reactions[:LOCATORS] if abs(b) > NO_REACTION]
-        part *= 1 + largest([1 / b for b in least]) if least else arb(1)
-        yield from written("the lower end of its ratio", low, ratio.low, part * (1 + ratio.low))
+        part *= 1 + find_largest([1 / b for b in least]) if least else arb(1)
+        yield from judge_written_number("the lower end of its ratio", low, ratio.low, part * (1 + ratio.low))
         if (ratio.high is None) != (high == inf):
             end = "has none" if ratio.high is None else f"is {number(ratio.high)}"
             yield Finding(True, f"the upper end of its ratio {end}, and the file says otherwise")
         elif ratio.high is not None:
-            yield from written("the upper end of its ratio", high, ratio.high, part * (1 + ratio.high))
+            yield from judge_written_number(
+                "the upper end of its ratio", high, ratio.high, part * (1 + ratio.high)
+            )
 
-    def kept_by_closing(self, forces: Sequence[arb]) -> list[arb]:
-        """The part of some forces that lies in the plane of those with which both clamps press."""
+    def project_on_closing(self, forces: Sequence[arb]) -> list[arb]:
+        """Return the part of some forces that lies in the plane of those with which both clamps press."""
         ones, others = zip(*self.reactions, strict=True)
-        aa, ab, bb = inner(ones, ones), inner(ones, others), inner(others, others)
-        fa, fb, area = inner(forces, ones), inner(forces, others), aa * bb - ab * ab
+        aa, ab, bb = (
+            compute_inner_product(ones, ones),
+            compute_inner_product(ones, others),
+            compute_inner_product(others, others),
+        )
+        fa, fb, area = (
+            compute_inner_product(forces, ones),
+            compute_inner_product(forces, others),
+            aa * bb - ab * ab,
+        )
         u, v = (fa * bb - fb * ab) / area, (fb * aa - fa * ab) / area
         return [u * a + v * b for a, b in self.reactions]

@@ -23,16 +23,34 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
-    dot,
-    exact_point,
-    largest,
-    turned,
+    compute_dot_product,
+    find_largest,
+    make_exact_point,
+    turn_vector,
 )
-from workhold.verification.contacts import BallContact, BallPose, met_by
-from workhold.verification.placing import faces_avoided, faces_without_band, proven_pose, zone_distance
+from workhold.verification.contacts import BallContact, BallPose, select_outline_for
+from workhold.verification.placing import (
+    compute_zone_distance,
+    find_avoided_faces,
+    find_faces_without_band,
+    prove_pose,
+)
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.travel import WAYS, direction_of, directions_of, line_of, pieces_apart
-from workhold.verification.seat import LOCATORS, LocatorWrenches, Push, SeatBalance, closure_margin, ratio_of
+from workhold.verification.rules.travel import (
+    WAYS,
+    find_clamp_line,
+    find_direction,
+    list_directions,
+    measure_piece_distance,
+)
+from workhold.verification.seat import (
+    LOCATORS,
+    LocatorWrenches,
+    Push,
+    SeatBalance,
+    compute_closure_margin,
+    find_ratio,
+)
 from workhold.verification.tolerances import (
     HAIR,
     LEAST_PUSH,
@@ -42,13 +60,13 @@ from workhold.verification.tolerances import (
     SAME,
     SAME_FREEDOM,
     Finding,
+    judge_slack,
     number,
-    rule,
 )
 from workhold.verification.tool_walk import Element, walk_of
-from workhold.verification.touching import on_line, touching_findings
+from workhold.verification.touching import find_points_on_line, judge_touching
 
-__all__ = ["SeatClamp", "SeatOnPlate", "pairs_at"]
+__all__ = ["SeatClamp", "SeatOnPlate", "count_pairs_at_seat"]
 
 # mm. A program's clearance that is met or missed by no more is in doubt.
 IN_DOUBT = 2e-7
@@ -127,7 +145,7 @@ class SeatOnPlate:
     seat: LocatorWrenches
 
     @classmethod
-    def of(
+    def from_fixture(
         cls,
         fixture: Fixture,
         contacts: Sequence[BallContact],
@@ -139,9 +157,9 @@ class SeatOnPlate:
         named = zip(hardware.names, fixture.pegs[:LOCATORS], contacts, strict=False)
         held = [(name, peg, contact) for name, peg, contact in named if not contact.is_flush]
         locators = [(name, contact) for name, _, contact in held]
-        still = BallPose.of(pose.theta, pose.x, pose.y, arb(0))
-        seat = LocatorWrenches.of(contacts[:LOCATORS], still)
-        met = met_by(outline, fixture.pegs[-1].carrier)
+        still = BallPose.from_turn_and_place(pose.theta, pose.x, pose.y, arb(0))
+        seat = LocatorWrenches.from_contacts(contacts[:LOCATORS], still)
+        met = select_outline_for(outline, fixture.pegs[-1].carrier)
         return cls(query, hardware, met, [peg for _, peg, _ in held], locators, still, seat)
 
     @property
@@ -149,49 +167,51 @@ class SeatOnPlate:
         """The holes that the clamps are bolted in."""
         return self.hardware.lattices[0]
 
-    def radius(self, direction: str) -> float:
-        """Radius in mm of the tip of a clamp in a direction."""
+    def find_tip_radius(self, direction: str) -> float:
+        """Return the radius in mm of the tip of a clamp in a direction."""
         return self.hardware.tips[direction].peg_radius
 
-    def pairs(self, directions: Sequence[str]) -> Iterator[SeatPair]:
-        """The pairs of clamps in two directions that hold the part here, those in doubt with them."""
+    def list_pairs(self, directions: Sequence[str]) -> Iterator[SeatPair]:
+        """Yield the pairs of clamps in two directions that hold the part here, those in doubt with them."""
         one, other = directions
-        found = {direction: self.clamps(direction) for direction in dict.fromkeys(directions)}
+        found = {direction: self.list_clamps(direction) for direction in dict.fromkeys(directions)}
         both = combinations(found[one], 2) if one == other else product(found[one], found[other])
         for first, second in both:
-            ratio = ratio_of(first.push, second.push)
+            ratio = find_ratio(first.push, second.push)
             if ratio is not None and ratio.high is not None and ratio.high < ratio.low:
                 continue
-            margin = closure_margin(first.push, second.push)
+            margin = compute_closure_margin(first.push, second.push)
             if margin < LEAST_SHARE:
                 continue
-            stands = [sure for *_, sure in self.choices(first, second)]
+            stands = [sure for *_, sure in self.list_hole_choices(first, second)]
             if stands:
                 sure = any(stands) and first.sure and second.sure and bool(margin > LEAST_SHARE)
                 freedom = arb(0, 90) if ratio is None else ratio.freedom
                 yield SeatPair(freedom, margin, sure and ratio is not None)
 
-    def clamps(self, direction: str) -> list[SeatClamp]:
-        """All clamps that may push in a direction and do not hold the part alone."""
+    def list_clamps(self, direction: str) -> list[SeatClamp]:
+        """Return all clamps that may push in a direction and do not hold the part alone."""
         found: list[SeatClamp] = []
-        avoided = faces_avoided(self.query) | faces_without_band(self.query.workpiece)
+        avoided = find_avoided_faces(self.query) | find_faces_without_band(self.query.workpiece)
         for face, side in sorted(self.outline.faces.items()):
             if face in avoided:
                 continue
-            for line in self.lines(side, direction):
-                for clamp in self.clamps_on(side, face, line, direction):
+            for line in self.list_lines(side, direction):
+                for clamp in self.list_clamps_on_line(side, face, line, direction):
                     # A tip at a joint touches both faces, and counts on the first.
-                    if not any(other.line == line and touch(other.tip, clamp.tip) for other in found):
+                    if not any(other.line == line and are_touching(other.tip, clamp.tip) for other in found):
                         found.append(clamp)
         return found
 
-    def lines(self, side: Side, direction: str) -> list[int]:
-        """Numbers of the rows, or columns, that fit on the plate and on which a tip may touch a side."""
+    def list_lines(self, side: Side, direction: str) -> list[int]:
+        """Return the numbers of the rows, or columns, that fit on the plate and on which a tip may touch a side."""
         upright = direction.endswith("y")
-        axis = self.axis(upright)
+        axis = self.compute_axis(upright)
         ends = [side.center] if isinstance(side, ArcSide) else [side.start, side.end]
-        reach = self.radius(direction) + (float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0)
-        places = [float((dot(axis, end) + self.shift(upright)).mid()) for end in ends]
+        reach = self.find_tip_radius(direction) + (
+            float(side.radius.mid()) if isinstance(side, ArcSide) else 0.0
+        )
+        places = [float((compute_dot_product(axis, end) + self.shift(upright)).mid()) for end in ends]
         pitch, noun = self.lattice.pitch[not upright], "column" if upright else "row"
         low, high = (
             ceil((min(places) - reach - BESIDE) / pitch),
@@ -200,81 +220,83 @@ class SeatOnPlate:
         numbers = [getattr(peg, noun) for peg in self.pegs]
         return [line for line in range(low, high + 1) if self.hardware.fits(noun, [*numbers, line])]
 
-    def axis(self, upright: bool) -> Point:
-        """The plate's x for columns, or y for rows, in the workpiece's frame."""
+    def compute_axis(self, upright: bool) -> Point:
+        """Return the plate's x for columns, or y for rows, in the workpiece's frame."""
         way = (1.0, 0.0) if upright else (0.0, 1.0)
-        return turned(exact_point(*way), self.pose.cosine, -self.pose.sine)
+        return turn_vector(make_exact_point(*way), self.pose.cosine, -self.pose.sine)
 
     def shift(self, upright: bool) -> arb:
-        """How far along that axis the workpiece's origin is from column or row 0, in mm."""
+        """Return how far along that axis the workpiece's origin is from column or row 0, in mm."""
         x, y = self.lattice.offset
         return self.pose.x - x if upright else self.pose.y - y
 
-    def clamps_on(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
-        """The clamps on a line that touch a side and may keep all rules of their own."""
-        upright, radius = direction.endswith("y"), arb(self.radius(direction))
-        if isinstance(side, ArcSide) and not side.reach(radius) > 0:
+    def list_clamps_on_line(self, side: Side, face: int, line: int, direction: str) -> Iterator[SeatClamp]:
+        """Yield the clamps on a line that touch a side and may keep all rules of their own."""
+        upright, radius = direction.endswith("y"), arb(self.find_tip_radius(direction))
+        if isinstance(side, ArcSide) and not side.compute_offset_radius(radius) > 0:
             return
-        axis, way = self.axis(upright), exact_point(*map(float, WAYS[direction]))
-        back = turned(way, self.pose.cosine, -self.pose.sine)
-        if isinstance(side, LineSide) and not dot(back, side.normal) > LEAST_PUSH:
+        axis, way = self.compute_axis(upright), make_exact_point(*map(float, WAYS[direction]))
+        back = turn_vector(way, self.pose.cosine, -self.pose.sine)
+        if isinstance(side, LineSide) and not compute_dot_product(back, side.normal) > LEAST_PUSH:
             return
         level = arb(self.lattice.pitch[not upright]) * line - self.shift(upright)
-        for point in on_line(side, radius, axis, level):
-            if not dot(back, side.outward(point)) > 0:
+        for point in find_points_on_line(side, radius, axis, level):
+            if not compute_dot_product(back, side.compute_outward_normal(point)) > 0:
                 continue
-            x, y = turned(point, self.pose.cosine, self.pose.sine)
+            x, y = turn_vector(point, self.pose.cosine, self.pose.sine)
             tip = x + self.pose.x, y + self.pose.y
             clamp = self.clamp(BallContact(tip, way, side, radius), face, line, direction)
             if clamp is not None:
                 yield clamp
 
     def clamp(self, contact: BallContact, face: int, line: int, direction: str) -> SeatClamp | None:
-        """A clamp whose tip is where a contact is; None where it certainly breaks a rule of its own."""
+        """Return a clamp whose tip is where a contact is; None where it certainly breaks a rule of its own."""
         margin = self.query.contact_margin
-        touches = verdict(touching_findings("a clamp", contact, face, self.pose, self.outline, margin))
+        touches = decide_verdict(judge_touching("a clamp", contact, face, self.pose, self.outline, margin))
         if touches is False:
             return None
-        push = self.seat.push(contact, self.pose)
+        push = self.seat.make_push(contact, self.pose)
         if push.push < LEAST_PUSH or push.alone > NO_REACTION:
             return None
         most = push.most - MOST_FORCE * push.push
         if most > 0:
             return None
         sure = [touches is True, bool(push.push > LEAST_PUSH), bool(push.alone < NO_REACTION), bool(most < 0)]
-        zones, place = self.query.restrictions.zones, contact.in_part(self.pose)
-        clear = [zone_distance(zone, place) - contact.radius + HAIR for zone in zones]
+        zones, place = self.query.restrictions.zones, contact.compute_center_in_part(self.pose)
+        clear = [compute_zone_distance(zone, place) - contact.radius + HAIR for zone in zones]
         if any(off < 0 for off in clear):
             return None
         passed = self.is_passed(contact, contact)
         if passed is False:
             return None
         sure += [passed is True, *(bool(off > 0) for off in clear)]
-        holes = list(self.holes(contact, line, direction))
+        holes = list(self.list_bolt_holes(contact, line, direction))
         return SeatClamp(direction, line, face, contact.hole, push, holes, all(sure)) if holes else None
 
     def is_passed(self, tip: BallContact, hole: BallContact) -> bool | None:
-        """Whether the program's tools pass clear of a clamp from its tip to a hole; None where that is in
-        doubt."""
+        """Return whether the program's tools pass clear of a clamp from its tip to a hole; None where that is
+        in doubt.
+        """
         if self.query.passed is None:
             return True
         program, height = self.query.passed
         low, height = next(iter(self.hardware.tips.values())).heights or (0.0, height)
         (x, y), (from_x, from_y) = (
-            (float(u.mid()), float(v.mid())) for u, v in (one.in_part(self.pose) for one in (tip, hole))
+            (float(u.mid()), float(v.mid()))
+            for u, v in (one.compute_center_in_part(self.pose) for one in (tip, hole))
         )
         radius = float(tip.clear_radius.mid())
         element = Element("a clamp", "", (x, y), (from_x, from_y), radius, height, low=low)
-        near = walk_of(program).nearest(element)
+        near = walk_of(program).find_nearest(element)
         if near.high < program.clearance - IN_DOUBT:
             return False
         return True if near.low > program.clearance + IN_DOUBT else None
 
-    def holes(self, contact: BallContact, line: int, direction: str) -> Iterator[BoltHole]:
-        """Where a clamp may be bolted whose tip is where a contact is, whatever the other clamp does."""
+    def list_bolt_holes(self, contact: BallContact, line: int, direction: str) -> Iterator[BoltHole]:
+        """Yield where a clamp may be bolted whose tip is where a contact is, whatever the other clamp does."""
         upright, rules = direction.endswith("y"), self.hardware.stroke
         if rules.span is None:
-            stands = verdict(rules.findings("a clamp", self.locators, contact, self.pose, self.outline))
+            stands = decide_verdict(rules.judge("a clamp", self.locators, contact, self.pose, self.outline))
             if stands is not False:
                 column, row = (line, None) if upright else (None, line)
                 yield BoltHole(column, row, contact.hole, arb(0), stands is True)
@@ -288,14 +310,16 @@ class SeatOnPlate:
             column, row = (line, count) if upright else (count, line)
             place = x + arb(pitch_x) * column, y + arb(pitch_y) * row
             bolted, pose = evolve(contact, hole=place), evolve(self.pose, travels=(-stroke,))
-            stands = verdict(rules.findings("a clamp", self.locators, bolted, pose, self.outline))
-            passed = self.is_passed(contact, evolve(bolted, way=exact_point(0.0, 0.0)))
+            stands = decide_verdict(rules.judge("a clamp", self.locators, bolted, pose, self.outline))
+            passed = self.is_passed(contact, evolve(bolted, way=make_exact_point(0.0, 0.0)))
             if stands is not False and passed is not False:
                 yield BoltHole(column, row, place, stroke, stands is True and passed is True)
 
-    def choices(self, one: SeatClamp, other: SeatClamp) -> Iterator[tuple[BoltHole, BoltHole, bool]]:
-        """The holes in which two clamps may be bolted together, and whether they certainly may."""
-        apart = arb(self.radius(one.direction)) + self.radius(other.direction) - HAIR
+    def list_hole_choices(
+        self, one: SeatClamp, other: SeatClamp
+    ) -> Iterator[tuple[BoltHole, BoltHole, bool]]:
+        """Yield the holes in which two clamps may be bolted together, and whether they certainly may."""
+        apart = arb(self.find_tip_radius(one.direction)) + self.find_tip_radius(other.direction) - HAIR
         for first, second in product(one.holes, other.holes):
             columns = [peg.column for peg in self.pegs] + [
                 h.column for h in (first, second) if h.column is not None
@@ -303,11 +327,11 @@ class SeatOnPlate:
             rows = [peg.row for peg in self.pegs] + [h.row for h in (first, second) if h.row is not None]
             if not (self.hardware.fits("column", columns) and self.hardware.fits("row", rows)):
                 continue
-            clear = pieces_apart((one.tip, first.place), (other.tip, second.place)) - apart
+            clear = measure_piece_distance((one.tip, first.place), (other.tip, second.place)) - apart
             if not clear < 0:
                 yield first, second, first.sure and second.sure and bool(clear > 0)
 
-    def pair_findings(
+    def judge_pair(
         self,
         fixture: Fixture,
         pair: Pair,
@@ -315,26 +339,30 @@ class SeatOnPlate:
         pose: BallPose,
         balance: SeatBalance,
     ) -> Iterator[Finding]:
-        """Whether the clamps are bolted with the least total travel and stand for the pairs of the seat."""
+        """Check whether the clamps are bolted with the least total travel and stand for the pairs of the seat."""
         if self.hardware.stroke.span is not None:
-            yield from self.stroke_findings(fixture, contacts, pose)
+            yield from self.judge_strokes(fixture, contacts, pose)
         if not self.hardware.every:
-            yield from best_findings(pair, balance, list(self.pairs(directions_of(fixture))))
+            yield from judge_best_pair(pair, balance, list(self.list_pairs(list_directions(fixture))))
         elif pair.count != 1:
             yield Finding(True, f"it stands for {pair.count} pairs of clamps, and all are listed")
 
-    def stroke_findings(
+    def judge_strokes(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose
     ) -> Iterator[Finding]:
-        """Whether the clamps are bolted in the holes of the least total travel that have a place together."""
+        """Check whether the clamps are bolted in the holes of the least total travel that have a place together."""
         clamps = []
         for peg, contact in zip(fixture.pegs[LOCATORS:], contacts[LOCATORS:], strict=True):
             tip = evolve(contact, hole=contact.place(pose), travel=0)
-            line, direction, push = line_of(peg), direction_of(peg), self.seat.push(tip, self.pose)
-            holes = list(self.holes(tip, line, direction))
+            line, direction, push = (
+                find_clamp_line(peg),
+                find_direction(peg),
+                self.seat.make_push(tip, self.pose),
+            )
+            holes = list(self.list_bolt_holes(tip, line, direction))
             clamps.append(SeatClamp(direction, line, peg.face, tip.hole, push, holes, True))
         total = -sum(pose.travels, arb(0))
-        for first, second, sure in self.choices(*clamps):
+        for first, second, sure in self.list_hole_choices(*clamps):
             less = total - HAIR - first.stroke - second.stroke
             if less < 0:
                 continue
@@ -342,8 +370,8 @@ class SeatOnPlate:
             yield Finding(sure and bool(less > 0), f"the clamps could be bolted with {words}")
 
 
-def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -> Iterator[Finding]:
-    """Whether a fixture stands for as many pairs as there are at its seat, and none of them is better."""
+def judge_best_pair(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -> Iterator[Finding]:
+    """Check whether a fixture stands for as many pairs as there are at its seat, and none of them is better."""
     sure = [one for one in pairs if one.sure]
     if not len(sure) <= pair.count <= len(pairs):
         yield Finding(
@@ -352,36 +380,36 @@ def best_findings(pair: Pair, balance: SeatBalance, pairs: Sequence[SeatPair]) -
     elif len(sure) < len(pairs):
         yield Finding(False, f"there are {len(sure)} to {len(pairs)} pairs of clamps at its seat")
     freedom, margin = balance.ratio.freedom, balance.margin
-    freest = largest([freedom, *(one.freedom for one in sure)])
-    yield from rule(
+    freest = find_largest([freedom, *(one.freedom for one in sure)])
+    yield from judge_slack(
         -(freest - freedom - SAME_FREEDOM - HAIR),
         f"another pair of clamps at its seat has a freedom of {number(freest)} degrees, this one "
         f"{number(freedom)}",
     )
     rivals = [one.margin for one in sure if freest - one.freedom < SAME_FREEDOM - HAIR]
-    widest = largest([margin, *rivals])
-    yield from rule(
+    widest = find_largest([margin, *rivals])
+    yield from judge_slack(
         2 * HAIR - (widest - margin),
         f"an equally free pair of clamps at its seat has a closure margin of {number(widest)}, this one "
         f"{number(margin)}",
     )
 
 
-def pairs_at(
+def count_pairs_at_seat(
     fixture: Fixture, query: Query, hardware: ToolkitRules, outline: BallOutline
 ) -> tuple[int, int] | None:
-    """The least and greatest number of pairs of clamps at a fixture's seat; None for no proven pose."""
-    contacts = hardware.contacts(fixture, outline)
-    pose, _ = proven_pose(contacts, fixture.pose, hardware.travels(fixture))
+    """Return the least and greatest number of pairs of clamps at a fixture's seat; None for no proven pose."""
+    contacts = hardware.make_contacts(fixture, outline)
+    pose, _ = prove_pose(contacts, fixture.pose, hardware.compute_travels(fixture))
     if pose is None:
         return None
-    standing = SeatOnPlate.of(fixture, contacts, pose, query, hardware, outline)
-    pairs = list(standing.pairs(directions_of(fixture)))
+    standing = SeatOnPlate.from_fixture(fixture, contacts, pose, query, hardware, outline)
+    pairs = list(standing.list_pairs(list_directions(fixture)))
     return sum(one.sure for one in pairs), len(pairs)
 
 
-def verdict(findings: Iterable[Finding]) -> bool | None:
-    """Whether nothing speaks against something; None where that is in doubt."""
+def decide_verdict(findings: Iterable[Finding]) -> bool | None:
+    """Return whether nothing speaks against something; None where that is in doubt."""
     doubt = False
     for finding in findings:
         if finding.definite:
@@ -390,5 +418,5 @@ def verdict(findings: Iterable[Finding]) -> bool | None:
     return None if doubt else True
 
 
-def touch(one: Point, other: Point) -> bool:
+def are_touching(one: Point, other: Point) -> bool:
     return all(bool(abs(a - b) < SAME) for a, b in zip(one, other, strict=True))

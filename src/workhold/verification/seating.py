@@ -39,18 +39,18 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
-    exact_point,
-    minus,
-    norm,
-    turned,
+    compute_norm,
+    make_exact_point,
+    subtract,
+    turn_vector,
 )
 from workhold.verification.contacts import BallPose
 from workhold.verification.listing import Claim
 from workhold.verification.rules.hardware import ToolkitRules
-from workhold.verification.rules.travel import travelled
+from workhold.verification.rules.travel import measure_travel
 from workhold.verification.tolerances import AGREEMENT, SAME_PLACE, SAME_PLACE_SPARE
 
-__all__ = ["FloatOutline", "PartPlacement", "SeatingJudge", "StatedSeating", "stop_of", "touching_wall"]
+__all__ = ["FloatOutline", "PartPlacement", "SeatingJudge", "StatedSeating", "stop_of", "make_wall_contact"]
 
 # mm. A tip may be in a locator by this much: rounding.
 APART = 1e-6
@@ -75,28 +75,28 @@ class PartPlacement:
     mirrored: bool = False
 
     @classmethod
-    def of(cls, pose: Mapping[str, float], mirrored: bool = False) -> PartPlacement:
+    def from_pose(cls, pose: Mapping[str, float], mirrored: bool = False) -> PartPlacement:
         return cls(pose["theta_deg"], pose["x"], pose["y"], mirrored)
 
-    def turned(self, way: Point) -> Point:
-        """A vector of the part as it lies, in balls."""
+    def turn_vector(self, way: Point) -> Point:
+        """Return a vector of the part as it lies, in balls."""
         sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
-        return turned((-way[0], way[1]) if self.mirrored else way, cosine, sine)
+        return turn_vector((-way[0], way[1]) if self.mirrored else way, cosine, sine)
 
-    def own(self, way: Point) -> Point:
-        """A vector of the toolkit's frame as the part sees it, in balls."""
+    def map_vector_to_part(self, way: Point) -> Point:
+        """Return a vector of the toolkit's frame as the part sees it, in balls."""
         sine, cosine = (arb(self.theta_deg) / 180).sin_cos_pi()
-        x, y = turned(way, cosine, -sine)
+        x, y = turn_vector(way, cosine, -sine)
         return (-x, y) if self.mirrored else (x, y)
 
-    def placed(self, points: Array) -> Array:
-        """Points (N, 2) of the part as they lie, in doubles."""
+    def place_points(self, points: Array) -> Array:
+        """Return the points (N, 2) of the part as they lie, in doubles."""
         c, s = cos(radians(self.theta_deg)), sin(radians(self.theta_deg))
         x, y = points[:, 0] * (-1.0 if self.mirrored else 1.0), points[:, 1]
         return np.stack([c * x - s * y + self.x, s * x + c * y + self.y], axis=1)
 
-    def local(self, points: Array) -> Array:
-        """Points (N, 2) of the toolkit's frame as the part sees them, in doubles."""
+    def map_points_to_part(self, points: Array) -> Array:
+        """Return the points (N, 2) of the toolkit's frame as the part sees them, in doubles."""
         c, s = cos(radians(self.theta_deg)), sin(radians(self.theta_deg))
         x, y = points[:, 0] - self.x, points[:, 1] - self.y
         return np.stack([(c * x + s * y) * (-1.0 if self.mirrored else 1.0), c * y - s * x], axis=1)
@@ -122,50 +122,54 @@ class StatedContact:
     is_inside: bool
 
 
-def touching_wall(outline: BallOutline, contact: Mapping[str, int], place: PartPlacement) -> StatedContact:
-    """A contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
-    number, down, is_corner = contact["peg"], exact_point(0.0, -1.0), "corner" in contact
+def make_wall_contact(
+    outline: BallOutline, contact: Mapping[str, int], place: PartPlacement
+) -> StatedContact:
+    """Return a contact with a wall along x at y = 0: a corner, or the lowest point of a convex arc above it."""
+    number, down, is_corner = contact["peg"], make_exact_point(0.0, -1.0), "corner" in contact
     side = outline.faces.get(contact["corner" if is_corner else "face"])
     if is_corner and side is not None:
         local, off = side.start, arb(0)
     elif isinstance(side, ArcSide) and side.sign > 0:
-        x, y = place.own(down)
+        x, y = place.map_vector_to_part(down)
         local = side.center[0] + side.radius * x, side.center[1] + side.radius * y
-        off = side.distance(local)
+        off = side.compute_distance(local)
     else:
-        return StatedContact(number, exact_point(0.0, 0.0), down, inf, False)
-    x, y = place.turned(local)
+        return StatedContact(number, make_exact_point(0.0, 0.0), down, inf, False)
+    x, y = place.turn_vector(local)
     at = x + place.x, y + place.y
     return StatedContact(number, at, down, float(abs(at[1]).upper()), bool(off < AGREEMENT))
 
 
-def touching_peg(
+def make_peg_contact(
     outline: BallOutline,
     contact: Mapping[str, int],
     place: PartPlacement,
     center: tuple[float, float],
     radius: float,
 ) -> StatedContact:
-    """A contact with a face or a corner of a round peg about a center, of a radius in mm."""
+    """Return a contact with a face or a corner of a round peg about a center, of a radius in mm."""
     number, (x, y), face = contact["peg"], center, contact.get("face")
-    local = place.own(exact_point(x - place.x, y - place.y))
+    local = place.map_vector_to_part(make_exact_point(x - place.x, y - place.y))
     side = outline.faces.get(contact["corner"] if face is None else face)
     if side is None:
-        return StatedContact(number, exact_point(x, y), exact_point(0.0, 0.0), inf, False)
+        return StatedContact(number, make_exact_point(x, y), make_exact_point(0.0, 0.0), inf, False)
     if face is None:
-        way, inside = minus(local, side.start), True
-        off = abs(norm(way) - radius)
+        way, inside = subtract(local, side.start), True
+        off = abs(compute_norm(way) - radius)
     else:
-        way, off = side.outward(local), abs(side.gap(local) - radius)
-        inside = bool(abs(side.distance(local) - radius) < AGREEMENT)
-    size = norm(way)
-    normal = place.turned((way[0] / size, way[1] / size))
+        way, off = side.compute_outward_normal(local), abs(side.compute_gap(local) - radius)
+        inside = bool(abs(side.compute_distance(local) - radius) < AGREEMENT)
+    size = compute_norm(way)
+    normal = place.turn_vector((way[0] / size, way[1] / size))
     at = arb(x) - radius * normal[0], arb(y) - radius * normal[1]
     return StatedContact(number, at, normal, float(off.upper()), inside)
 
 
-def touching_faults(contacts: Sequence[StatedContact], on_wall: Sequence[int], wall: str) -> Iterator[str]:
-    """Contacts that do not touch as stated, are stated twice, or lack the wall's first end.
+def find_touching_faults(
+    contacts: Sequence[StatedContact], on_wall: Sequence[int], wall: str
+) -> Iterator[str]:
+    """Yield the contacts that do not touch as stated, are stated twice, or lack the wall's first end.
 
     The pegs ``on_wall`` are ends of the contact with what is called ``wall``.
     """
@@ -182,13 +186,13 @@ def touching_faults(contacts: Sequence[StatedContact], on_wall: Sequence[int], w
 
 
 def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float | None:
-    """The travel in mm at which what moves is stopped without the part; None where nothing stops it.
+    """Return the travel in mm at which what moves is stopped without the part; None where nothing stops it.
 
     ``separation`` is the travel in mm at which a fixture has its pegs.
     """
-    moved = [peg for peg in pegs if toolkit.carrier(peg.carrier).travel is not None]
-    still = [peg for peg in pegs if peg not in moved and toolkit.carrier(peg.carrier).contact.is_placed]
-    moving, tip = toolkit.carrier(moved[0].carrier), moved[0]
+    moved = [peg for peg in pegs if toolkit.find_carrier(peg.carrier).travel is not None]
+    still = [peg for peg in pegs if peg not in moved and toolkit.find_carrier(peg.carrier).contact.is_placed]
+    moving, tip = toolkit.find_carrier(moved[0].carrier), moved[0]
     assert moving.travel is not None
     if toolkit.clamping < 0:
         return moving.travel.most
@@ -198,7 +202,7 @@ def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float |
     for peg in still:
         dx, dy = peg.x - tip.x, peg.y - tip.y
         along, across = dx * ux + dy * uy, dx * uy - dy * ux
-        square = (moving.peg_radius + toolkit.carrier(peg.carrier).peg_radius) ** 2 - across * across
+        square = (moving.peg_radius + toolkit.find_carrier(peg.carrier).peg_radius) ** 2 - across * across
         # It moves against its unit vector, and meets what lies there.
         if square > 0.0 and along <= 0.0:
             ends.append(separation + min(along + sqrt(square), APART))
@@ -212,8 +216,9 @@ def stop_of(pegs: Sequence[Peg], toolkit: Toolkit, separation: float) -> float |
 PRESSES = 1e-9
 
 
-def balances(wrenches: Array, spare: float = 1e-9) -> bool:
-    """Whether factors of 0 or more make wrenches (4, K) add up to (0, 0, 0, 1), what moves bearing one.
+def can_balance(wrenches: Array, spare: float = 1e-9) -> bool:
+    """Return whether factors of 0 or more make wrenches (4, K) add up to (0, 0, 0, 1), what moves bearing
+    one.
 
     If some do, then at most four that are independent do (Caratheodory's theorem).
     """
@@ -256,7 +261,7 @@ class FloatOutline:
     arm: float
 
     @classmethod
-    def of(cls, segments: Sequence[Side], workpiece: Workpiece) -> FloatOutline:
+    def from_segments(cls, segments: Sequence[Side], workpiece: Workpiece) -> FloatOutline:
         lines, arcs, points, edges = [], [], list[Array](), list[Array]()
         for side in segments:
             if isinstance(side, LineSide):
@@ -285,17 +290,17 @@ class FloatOutline:
             np.array(lines).reshape(-1, 4), np.array(arcs).reshape(-1, 5), every, np.concatenate(edges), arm
         )
 
-    def lowest(self, place: PartPlacement) -> float:
-        """How high in mm the lowest point of the part is."""
+    def compute_lowest_height(self, place: PartPlacement) -> float:
+        """Return how high in mm the lowest point of the part is."""
         turn = radians(place.theta_deg)
         down = np.array([-sin(turn) * (-1.0 if place.mirrored else 1.0), -cos(turn)])
         x, y, radius, middle, half = self.arcs.T
         away = np.abs((np.arctan2(down[1], down[0]) - middle + pi) % (2.0 * pi) - pi)
         below = np.stack([x, y], axis=1)[away <= half] + radius[away <= half, None] * down
-        return float(place.placed(np.concatenate([self.points, below]))[:, 1].min())
+        return float(place.place_points(np.concatenate([self.points, below]))[:, 1].min())
 
-    def distances(self, points: Array) -> Array:
-        """Distances (N,) of points from the outline."""
+    def measure_distances(self, points: Array) -> Array:
+        """Return the distances (N,) of points from the outline."""
         found = np.full(len(points), np.inf)
         for ax, ay, bx, by in self.lines:
             t = ((points[:, 0] - ax) * (bx - ax) + (points[:, 1] - ay) * (by - ay)) / (
@@ -313,12 +318,12 @@ class FloatOutline:
         return found
 
     def is_free(self, pegs: Array, radii: Array, place: PartPlacement) -> bool:
-        """Whether no disc about centres (N, 2) of radii (N,) in mm is in the part or reaches into it."""
-        points = place.local(pegs)
-        return bool((self.distances(points) >= radii).all() and not self.holds(points).any())
+        """Return whether no disc about centres (N, 2) of radii (N,) in mm is in the part or reaches into it."""
+        points = place.map_points_to_part(pegs)
+        return bool((self.measure_distances(points) >= radii).all() and not self.contains(points).any())
 
-    def holds(self, points: Array) -> NDArray[np.bool_]:
-        """Whether the part holds points (N,), as far as its polygon shows."""
+    def contains(self, points: Array) -> NDArray[np.bool_]:
+        """Return whether the part holds points (N,), as far as its polygon shows."""
         ax, ay, bx, by = self.edges.T
         x, y = points[:, :1], points[:, 1:]
         crosses = (ay <= y) != (by <= y)
@@ -326,9 +331,9 @@ class FloatOutline:
         right = ax + (y - ay) / rise * (bx - ax) > x
         return np.asarray((crosses & right).sum(axis=1) % 2 == 1)
 
-    def farthest(self, one: PartPlacement, other: PartPlacement) -> float:
-        """How far in mm the outline as it lies in one way is from that in another."""
-        return float(self.distances(other.local(one.placed(self.points))).max())
+    def measure_farthest(self, one: PartPlacement, other: PartPlacement) -> float:
+        """Return how far in mm the outline as it lies in one way is from that in another."""
+        return float(self.measure_distances(other.map_points_to_part(one.place_points(self.points))).max())
 
 
 # Files have nine decimals, of numbers that follow from others that are rounded so.
@@ -354,21 +359,23 @@ class SeatingJudge:
     @cached_property
     def outline(self) -> BallOutline:
         """The part in balls."""
-        return BallOutline.of(self.query.workpiece)
+        return BallOutline.from_workpiece(self.query.workpiece)
 
     @cached_property
     def rough(self) -> FloatOutline:
         """The part in doubles."""
-        return FloatOutline.of(self.outline.segments, self.query.workpiece)
+        return FloatOutline.from_segments(self.outline.segments, self.query.workpiece)
 
-    def fault(self, fixture: Fixture) -> str:
-        """What is wrong with the seating of a fixture, a sentence without a full stop; empty for nothing."""
+    def find_fault(self, fixture: Fixture) -> str:
+        """Return what is wrong with the seating of a fixture, a sentence without a full stop; empty for nothing."""
         claim: Claim | None = fixture.seating
         if claim is None:
             return ""
         if len(fixture.travels) > 1:
             return "its seating is stated, and with two clamps there is none"
-        return next((f"its seating: {words}" for words in StatedSeating(self, fixture, claim).faults()), "")
+        return next(
+            (f"its seating: {words}" for words in StatedSeating(self, fixture, claim).find_faults()), ""
+        )
 
 
 @define(slots=False)
@@ -385,12 +392,12 @@ class StatedSeating:
 
     @cached_property
     def moving(self) -> list[bool]:
-        return [any(self.judge.hardware.way(peg)) for peg in self.fixture.pegs]
+        return [any(self.judge.hardware.find_way(peg)) for peg in self.fixture.pegs]
 
     @cached_property
     def way(self) -> tuple[float, float]:
         """Along which they move as their travel grows."""
-        return self.judge.hardware.way(self.fixture.pegs[self.moving.index(True)])
+        return self.judge.hardware.find_way(self.fixture.pegs[self.moving.index(True)])
 
     @cached_property
     def on_wall(self) -> list[int]:
@@ -404,14 +411,14 @@ class StatedSeating:
         if self.fixture.direction is None:
             return self.fixture.travel
         tip = self.fixture.pegs[self.moving.index(True)]
-        return travelled(tip, self.judge.hardware.carriers[tip.carrier])
+        return measure_travel(tip, self.judge.hardware.carriers[tip.carrier])
 
     @property
     def clamping(self) -> int:
         """1 where the travel gets less as it clamps, -1 where it gets more."""
         return self.judge.query.toolkit.clamping
 
-    def faults(self) -> Iterator[str]:
+    def find_faults(self) -> Iterator[str]:
         seats = self.fields["seats"]
         own = [place for place, seat in enumerate(self.claim.seating.seats) if seat.is_own]
         if len(own) != 1:
@@ -431,15 +438,15 @@ class StatedSeating:
         for number, seat in enumerate(seats, 1):
             for words in self.seat_faults(seat, mine):
                 yield f"seat {number} {words}"
-        yield from self.figure_faults(mine)
+        yield from self.find_figure_faults(mine)
         yield from self.pass_faults(mine)
 
     def seat_faults(self, seat: Mapping[str, Any], own: Mapping[str, Any]) -> Iterator[str]:
         apart = seat["jaw_separation"] - own["jaw_separation"]
         if abs(apart - seat["difference"]) > ROUNDED:
             yield "has a difference that is not that of the separations"
-        place = PartPlacement.of(seat["pose"], seat["mirrored"])
-        covers = self.covers(place)
+        place = PartPlacement.from_pose(seat["pose"], seat["mirrored"])
+        covers = self.covers_own_place(place)
         if covers is not None and covers != seat["same_place"]:
             yield "does not say rightly whether the part covers the same place"
         stop = self.fields["stop"]
@@ -447,25 +454,25 @@ class StatedSeating:
             yield "lies beyond the stop"
         if seat["kind"] == "unsettled":
             return
-        yield from self.freedom_faults(place, apart)
-        contacts = [self.touching(contact, place, apart) for contact in seat["contacts"]]
-        yield from touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
-        if self.kind_of(seat) != seat["kind"] and seat["kind"] != "loose":
+        yield from self.find_freedom_faults(place, apart)
+        contacts = [self.make_contact(contact, place, apart) for contact in seat["contacts"]]
+        yield from find_touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
+        if self.name_seat(seat) != seat["kind"] and seat["kind"] != "loose":
             yield f"is called {seat['kind']}, which its contacts are not"
         if seat["kind"] in STRICT and len(seat["forces"]) != len(contacts):
             yield "does not have a force for each contact"
-        elif seat["kind"] in STRICT and not self.balance(contacts, place, seat["forces"]):
+        elif seat["kind"] in STRICT and not self.are_forces_balanced(contacts, place, seat["forces"]):
             yield "is no equilibrium of its forces"
-        elif seat["kind"] == "loose" and not balances(self.wrenches(contacts, place), BALANCED):
+        elif seat["kind"] == "loose" and not can_balance(self.make_wrenches(contacts, place), BALANCED):
             yield "is no equilibrium of its contacts"
 
     def is_own(self, contact: Mapping[str, int]) -> bool:
-        """Whether a contact in the fixture's pose is the fixture's: on its face, or at its end on a wall."""
+        """Return whether a contact in the fixture's pose is the fixture's: on its face, or at its end on a wall."""
         peg = self.fixture.pegs[contact["peg"]]
         if contact["peg"] not in self.on_wall:
             return contact.get("face") == peg.face
-        touched = self.touching(contact, self.lying, 0.0).at
-        return bool(norm(minus(touched, self.ends[contact["peg"]])) < AGREEMENT)
+        touched = self.make_contact(contact, self.lying, 0.0).at
+        return bool(compute_norm(subtract(touched, self.ends[contact["peg"]])) < AGREEMENT)
 
     @cached_property
     def lying(self) -> PartPlacement:
@@ -474,11 +481,11 @@ class StatedSeating:
     @cached_property
     def ends(self) -> list[Point]:
         """Where each peg of the fixture, or end of its wall, touches; not every file says so of a wall."""
-        contacts = self.judge.hardware.contacts(self.fixture, self.judge.outline)
-        return [contact.place(BallPose.written(self.fixture.pose)) for contact in contacts]
+        contacts = self.judge.hardware.make_contacts(self.fixture, self.judge.outline)
+        return [contact.place(BallPose.from_written(self.fixture.pose)) for contact in contacts]
 
-    def kind_of(self, seat: Mapping[str, Any]) -> str:
-        """What a seat is called with its contacts."""
+    def name_seat(self, seat: Mapping[str, Any]) -> str:
+        """Return what a seat is called with its contacts."""
         contacts = seat["contacts"]
         if len(contacts) < 4:
             return "curved"
@@ -488,20 +495,20 @@ class StatedSeating:
         is_corner = any("corner" in one and one["peg"] not in self.on_wall for one in contacts)
         return "corner" if is_corner else "fixture"
 
-    def figure_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
-        """Figures that do not follow from seats and contacts."""
+    def find_figure_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
+        """Yield the figures that do not follow from seats and contacts."""
         fields = self.fields
         opening, factor, reading = (fields[key] for key in ("capture_opening", "room_factor", "reading"))
         if abs(sum(own["forces"]) - factor) > BALANCED:
             yield "room_factor is not the sum of the forces"
         drop = None if opening is None else opening / factor
-        if not agree(drop, fields["drop_room"]):
+        if not are_equal_figures(drop, fields["drop_room"]):
             yield "drop_room is not the capture opening over room_factor"
-        wrong = [seat for place, seat in enumerate(fields["seats"]) if self.counts(place, seat)]
+        wrong = [seat for place, seat in enumerate(fields["seats"]) if self.counts_as_wrong(place, seat)]
         if len(wrong) != fields["wrong_seats"]:
             yield f"wrong_seats says {fields['wrong_seats']}, and {len(wrong)} of its seats are"
         nearest = min((abs(seat["difference"]) for seat in wrong), default=None)
-        if not agree(nearest, reading):
+        if not are_equal_figures(nearest, reading):
             yield "reading is not the least difference of a wrong seat"
         unsettled = any(seat["kind"] == "unsettled" for seat in fields["seats"])
         if unsettled and not fields["unsettled"]:
@@ -509,14 +516,14 @@ class StatedSeating:
         out = fields["way_out"]
         if out is not None and (opening is None or out < opening - ROUNDED):
             yield "the way out is nearer than the capture opening"
-        yield from self.friction_faults(self.claim.seating.sticking_friction, own)
-        if not agree(
+        yield from self.find_friction_faults(self.claim.seating.sticking_friction, own)
+        if not are_equal_figures(
             stop_of(self.fixture.pegs, self.judge.query.toolkit, self.travel), fields["stop"], AGREEMENT
         ):
             yield "stop is not where what moves is stopped without the part"
 
-    def counts(self, place: int, seat: Mapping[str, Any]) -> bool:
-        """Whether a seat is a wrong one that counts."""
+    def counts_as_wrong(self, place: int, seat: Mapping[str, Any]) -> bool:
+        """Return whether a seat is a wrong one that counts."""
         seating, query = self.claim.seating, self.judge.query
         if seating.seats[place].is_own or seat["same_place"]:
             return False
@@ -525,7 +532,7 @@ class StatedSeating:
         return seating.most is None or seat["jaw_separation"] <= seating.most
 
     def pass_faults(self, own: Mapping[str, Any]) -> Iterator[str]:
-        """What is wrong with the pass, the cage and the placing."""
+        """Yield what is wrong with the pass, the cage and the placing."""
         fields = self.fields
         opening, top, cage, placing = (fields[key] for key in ("capture_opening", "pass", "cage", "placing"))
         if top is None:
@@ -540,16 +547,16 @@ class StatedSeating:
         rise = top["jaw_separation"] - own["jaw_separation"]
         if abs(self.clamping * rise - opening) > ROUNDED:
             yield "the pass is not at the capture opening"
-        there = PartPlacement.of(top["pose"])
-        contacts = [self.touching(contact, there, rise) for contact in top["contacts"]]
+        there = PartPlacement.from_pose(top["pose"])
+        contacts = [self.make_contact(contact, there, rise) for contact in top["contacts"]]
         if not 2 <= len(contacts) <= 3:
             yield "the pass does not have two or three contacts"
-        faults = touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
+        faults = find_touching_faults(contacts, self.on_wall, self.judge.hardware.wall_noun)
         yield from (f"the pass {words}" for words in faults)
-        yield from (f"the pass {words}" for words in self.freedom_faults(there, rise))
-        if not balances(self.wrenches(contacts, there), BALANCED):
+        yield from (f"the pass {words}" for words in self.find_freedom_faults(there, rise))
+        if not can_balance(self.make_wrenches(contacts, there), BALANCED):
             yield "the pass is no equilibrium of its contacts"
-        (x, y), (u, v) = (self.center(place) for place in (there, PartPlacement.of(own["pose"])))
+        (x, y), (u, v) = (self.center(place) for place in (there, PartPlacement.from_pose(own["pose"])))
         turn = (top["pose"]["theta_deg"] - own["pose"]["theta_deg"] + 180.0) % 360.0 - 180.0
         away = hypot(x - u, y - v) + 2.0 * self.judge.rough.arm * sin(abs(radians(turn)) / 2.0)
         if placing is not None and placing > away + AGREEMENT:
@@ -559,65 +566,67 @@ class StatedSeating:
             if not low - AGREEMENT <= min(0.0, shift) <= max(0.0, shift) <= high + AGREEMENT:
                 yield f"the cage leaves out the seat or its pass in {name}"
 
-    def friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
-        """Whether the part can stick below a friction, or cannot just above."""
-        place = PartPlacement.of(own["pose"])
-        contacts = [self.touching(contact, place, 0.0) for contact in own["contacts"]]
+    def find_friction_faults(self, stated: float, own: Mapping[str, Any]) -> Iterator[str]:
+        """Check whether the part can stick below a friction, or cannot just above."""
+        place = PartPlacement.from_pose(own["pose"])
+        contacts = [self.make_contact(contact, place, 0.0) for contact in own["contacts"]]
         low, high = stated * (1.0 - FRICTION), stated * (1.0 + FRICTION) + ROUNDED
-        if min(low, MOST_FRICTION) > ROUNDED and self.sticks(contacts, place, min(low, MOST_FRICTION)):
+        if min(low, MOST_FRICTION) > ROUNDED and self.can_stick(contacts, place, min(low, MOST_FRICTION)):
             yield "the part can stick below the sticking friction"
-        if high < MOST_FRICTION and not self.sticks(contacts, place, high):
+        if high < MOST_FRICTION and not self.can_stick(contacts, place, high):
             yield "the part cannot stick at the sticking friction"
 
-    def sticks(self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float) -> bool:
-        """Whether three of four contacts balance inside their cones."""
-        edges = np.hstack([self.wrenches(contacts, place, sign * friction) for sign in (1.0, -1.0)])
+    def can_stick(self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float) -> bool:
+        """Return whether three of four contacts balance inside their cones."""
+        edges = np.hstack([self.make_wrenches(contacts, place, sign * friction) for sign in (1.0, -1.0)])
         for three in combinations(range(4), 3):
             columns = [k + 4 * side for k in three for side in (0, 1)]
-            if balances(edges[:, columns]):
+            if can_balance(edges[:, columns]):
                 return True
         return False
 
     def center(self, place: PartPlacement) -> tuple[float, float]:
-        """Where the part's centre lies, in doubles."""
-        x, y = place.placed(np.array([self.judge.query.workpiece.center]))[0].tolist()
+        """Return where the part's centre lies, in doubles."""
+        x, y = place.place_points(np.array([self.judge.query.workpiece.center]))[0].tolist()
         return x, y
 
-    def peg(self, number: int, apart: float) -> tuple[float, float]:
-        """A peg's centre when what moves has gone on by a length in mm."""
+    def find_peg_center(self, number: int, apart: float) -> tuple[float, float]:
+        """Return a peg's centre when what moves has gone on by a length in mm."""
         peg, by = self.fixture.pegs[number], apart * self.moving[number]
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
-    def freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
-        """A peg in the part, or the part in a wall."""
+    def find_freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
+        """Yield a peg in the part, or the part in a wall."""
         numbers = [number for number in range(len(self.moving)) if number not in self.on_wall]
-        pegs = np.array([self.peg(number, apart) for number in numbers])
+        pegs = np.array([self.find_peg_center(number, apart) for number in numbers])
         carriers = self.judge.hardware.carriers
         radii = np.array([carriers[self.fixture.pegs[number].carrier].peg_radius for number in numbers])
         if not self.judge.rough.is_free(pegs, radii - AGREEMENT, place):
             yield "has a peg in the part"
         for wall in self.judge.hardware.walls:
-            if self.judge.rough.lowest(place) < -AGREEMENT:
+            if self.judge.rough.compute_lowest_height(place) < -AGREEMENT:
                 yield f"has the part in the {wall.noun}"
 
-    def covers(self, place: PartPlacement) -> bool | None:
-        """Whether the part covers the place that it has in the fixture; None where that is nearly so."""
-        away = self.judge.rough.farthest(place, self.lying)
+    def covers_own_place(self, place: PartPlacement) -> bool | None:
+        """Return whether the part covers the place that it has in the fixture; None where that is nearly so."""
+        away = self.judge.rough.measure_farthest(place, self.lying)
         is_near = SAME_PLACE / SAME_PLACE_SPARE < away < SAME_PLACE * SAME_PLACE_SPARE
         return None if is_near else away < SAME_PLACE
 
-    def touching(self, contact: Mapping[str, int], place: PartPlacement, apart: float) -> StatedContact:
-        """A contact of the part as it lies, in balls."""
+    def make_contact(self, contact: Mapping[str, int], place: PartPlacement, apart: float) -> StatedContact:
+        """Return a contact of the part as it lies, in balls."""
         number = contact["peg"]
         if number in self.on_wall:
-            return touching_wall(self.judge.outline, contact, place)
+            return make_wall_contact(self.judge.outline, contact, place)
         radius = self.judge.hardware.carriers[self.fixture.pegs[number].carrier].peg_radius
-        return touching_peg(self.judge.outline, contact, place, self.peg(number, apart), radius)
+        return make_peg_contact(
+            self.judge.outline, contact, place, self.find_peg_center(number, apart), radius
+        )
 
-    def wrenches(
+    def make_wrenches(
         self, contacts: Sequence[StatedContact], place: PartPlacement, friction: float = 0.0
     ) -> Array:
-        """Wrenches (4, K) of contacts that press along normals and, by friction, along tangents."""
+        """Return the wrenches (4, K) of contacts that press along normals and, by friction, along tangents."""
         cx, cy = self.center(place)
         columns = []
         for one in contacts:
@@ -629,15 +638,15 @@ class StatedSeating:
             columns.append((fx, fy, moment, borne))
         return np.array(columns).reshape(-1, 4).T
 
-    def balance(
+    def are_forces_balanced(
         self, contacts: Sequence[StatedContact], place: PartPlacement, forces: Sequence[float]
     ) -> bool:
-        """Whether forces balance, those of the pegs that move adding up to one."""
-        left = self.wrenches(contacts, place) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
+        """Return whether forces balance, those of the pegs that move adding up to one."""
+        left = self.make_wrenches(contacts, place) @ np.array(forces) - [0.0, 0.0, 0.0, 1.0]
         return bool(np.abs(left).max() < BALANCED * (1.0 + sum(forces)) and min(forces) > -PRESSES)
 
 
-def agree(derived: float | None, written: float | None, spare: float = ROUNDED) -> bool:
+def are_equal_figures(derived: float | None, written: float | None, spare: float = ROUNDED) -> bool:
     if derived is None or written is None:
         return derived is written
     return abs(derived - written) <= spare

@@ -18,9 +18,15 @@ from numpy.typing import NDArray
 
 from workhold.model.program import Program
 from workhold.model.query import Query
-from workhold.verification.tool_walk import ToolWalk, do_cross, pieces_to_point, point_to_piece, walk_of
+from workhold.verification.tool_walk import (
+    ToolWalk,
+    do_cross,
+    measure_pieces_to_point,
+    measure_points_to_piece,
+    walk_of,
+)
 
-__all__ = ["stock_faults"]
+__all__ = ["find_stock_faults"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -42,7 +48,7 @@ class Edge:
     radius: float
 
     @classmethod
-    def of(cls, start: Array, end: Array, bulge: float) -> Edge:
+    def from_ends(cls, start: Array, end: Array, bulge: float) -> Edge:
         (x, y), half = end - start, 2.0 * np.arctan(bulge)
         if bulge == 0.0:
             return cls(start, end, bulge, start, 0.0)
@@ -50,25 +56,25 @@ class Edge:
         center = (start + end) / 2 + np.array([-y, x]) / (2.0 * np.tan(half))
         return cls(start, end, bulge, center, float(np.hypot(*(start - center))))
 
-    def distance(self, points: Array) -> Array:
-        """Distances (N,) of points."""
+    def measure_distance(self, points: Array) -> Array:
+        """Return the distances (N,) of points."""
         if self.bulge == 0.0:
-            return point_to_piece(points, self.start, self.end)
-        way = np.angle(np.exp(1j * self.angle(points)))
+            return measure_points_to_piece(points, self.start, self.end)
+        way = np.angle(np.exp(1j * self.measure_angle(points)))
         on_rim = np.abs(np.hypot(*(points - self.center).T) - self.radius)
         ends = np.minimum(np.hypot(*(points - self.start).T), np.hypot(*(points - self.end).T))
         return np.asarray(np.where(np.abs(way) <= 2.0 * np.arctan(abs(self.bulge)), on_rim, ends))
 
-    def angle(self, points: Array) -> Array:
-        """How far points (N, 2) are turned about the centre from the middle of the arc, in radians."""
+    def measure_angle(self, points: Array) -> Array:
+        """Return how far points (N, 2) are turned about the centre from the middle of the arc, in radians."""
         chord = self.end - self.start
         # The middle of the arc is on the right of its chord where it runs counter-clockwise.
         right = np.array([chord[1], -chord[0]]) * np.sign(self.bulge)
         arm = points - self.center
         return np.asarray(np.arctan2(arm[:, 1], arm[:, 0]) - np.arctan2(right[1], right[0]))
 
-    def turns(self, points: Array) -> Array:
-        """The angle (N,) in radians that it turns around points."""
+    def measure_turns(self, points: Array) -> Array:
+        """Return the angle (N,) in radians that it turns around points."""
         one, other = self.start - points, self.end - points
         cross = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] + 0.0
         angle = np.arctan2(cross, (one * other).sum(axis=1))
@@ -86,13 +92,13 @@ class Ground:
     loops: tuple[tuple[Edge, ...], ...]
 
     @classmethod
-    def of(cls, loops: Sequence[Array], is_block: bool) -> Ground:
-        """The ground of outer loops (N, 3), or the box around them."""
+    def from_loops(cls, loops: Sequence[Array], is_block: bool) -> Ground:
+        """Return the ground of outer loops (N, 3), or the box around them."""
         found = []
         for loop in loops:
             ends = np.roll(loop[:, :2], -1, axis=0)
             rows = zip(loop[:, :2], ends, loop[:, 2].tolist(), strict=True)
-            found.append(tuple(Edge.of(*row) for row in rows))
+            found.append(tuple(Edge.from_ends(*row) for row in rows))
         if not is_block:
             return cls(tuple(found))
         edges = [edge for loop in found for edge in loop]
@@ -100,19 +106,20 @@ class Ground:
         for edge in edges:
             if edge.bulge:
                 far = edge.center + edge.radius * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
-                points.append(far[edge.distance(far) <= 1e-9 * edge.radius])
+                points.append(far[edge.measure_distance(far) <= 1e-9 * edge.radius])
         (x0, y0), (x1, y1) = np.concatenate(points).min(axis=0), np.concatenate(points).max(axis=0)
-        return cls.of([np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0.0]])], False)
+        return cls.from_loops([np.array([[x0, y0, 0], [x1, y0, 0], [x1, y1, 0], [x0, y1, 0.0]])], False)
 
-    def encloses(self, points: Array) -> Mask:
-        """(N,) whether points lie within a loop."""
-        each = [np.abs(sum(edge.turns(points) for edge in loop)) > pi for loop in self.loops]
+    def contains(self, points: Array) -> Mask:
+        """Return (N,) whether points lie within a loop."""
+        each = [np.abs(sum(edge.measure_turns(points) for edge in loop)) > pi for loop in self.loops]
         return np.asarray(np.logical_or.reduce(each))
 
-    def bounds(
+    def bound_distances(
         self, one: Array, other: Array, middle: Array, half: Array, sagitta: Array
     ) -> tuple[Array, Array]:
-        """The least distance of pieces of a path from the border at least, and how far one is at most (N,).
+        """Return the least distance of pieces of a path from the border at least, and how far one is at most
+        (N,).
 
         Parameters
         ----------
@@ -123,11 +130,14 @@ class Ground:
         for loop in self.loops:
             for edge in loop:
                 if edge.bulge:
-                    away = edge.distance(middle)
+                    away = edge.measure_distance(middle)
                     near, far = away - half, away + half
                 else:
-                    ends = [edge.distance(one), edge.distance(other)]
-                    others = [pieces_to_point(one, other, edge.start), pieces_to_point(one, other, edge.end)]
+                    ends = [edge.measure_distance(one), edge.measure_distance(other)]
+                    others = [
+                        measure_pieces_to_point(one, other, edge.start),
+                        measure_pieces_to_point(one, other, edge.end),
+                    ]
                     apart = np.minimum.reduce(ends + others)
                     near = np.where(do_cross(one, other, edge.start, edge.end), 0.0, apart) - sagitta
                     far = np.maximum(*ends) + sagitta
@@ -135,8 +145,8 @@ class Ground:
         return low, high
 
 
-def stock_faults(query: Query) -> Iterator[str]:
-    """What is wrong with the stretches on which a program's forces are said to act, in a sentence each.
+def find_stock_faults(query: Query) -> Iterator[str]:
+    """Yield what is wrong with the stretches on which a program's forces are said to act, in a sentence each.
 
     Nothing where the file does not say what the part is cut from.
     """
@@ -144,26 +154,27 @@ def stock_faults(query: Query) -> Iterator[str]:
     if program is None or program.forces is None or program.stock is None:
         return
     forces, line = program.forces, program.moves.line
-    ground = Ground.of(query.workpiece.outer_loops, program.stock.shape == "block")
+    ground = Ground.from_loops(query.workpiece.outer_loops, program.stock.shape == "block")
     acts = np.flatnonzero((forces.force != 0.0) | (forces.torque != 0.0))
     missing = np.setdiff1d(acts, forces.stretches.move)
     if len(missing):
         yield f"line {line[missing[0]]} of the program has a force, and no stretch on which it acts"
         return
-    rows = list(ranges_of(program, acts))
+    rows = list(list_acting_ranges(program, acts))
     for begin in range(0, len(rows), AT_ONCE):
         move, first, last, within = (
             np.array(one) for one in zip(*rows[begin : begin + AT_ONCE], strict=True)
         )
-        at = wrong_piece(walk_of(program), ground, move, first, last, within)
+        at = find_wrong_piece(walk_of(program), ground, move, first, last, within)
         if at >= 0:
             yield f"the tool in line {line[at]} of the program meets the stock elsewhere than is said"
             return
 
 
-def ranges_of(program: Program, acts: IntArray) -> Iterator[tuple[int, float, float, bool]]:
-    """The parts of moves with forces on which their tools are said to meet the stock, and those between them at
-    whose heights the tool could."""
+def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, float, float, bool]]:
+    """Yield the parts of moves with forces on which their tools are said to meet the stock, and those between
+    them at whose heights the tool could.
+    """
     forces, stock, moves = program.forces, program.stock, program.moves
     assert forces is not None and stock is not None
     top, long = inf if stock.height is None else stock.height + stock.top, moves.length
@@ -189,11 +200,12 @@ def ranges_of(program: Program, acts: IntArray) -> Iterator[tuple[int, float, fl
             yield move, at, high, False
 
 
-def wrong_piece(
+def find_wrong_piece(
     walk: ToolWalk, ground: Ground, move: IntArray, first: Array, last: Array, within: Mask
 ) -> int:
-    """The number of a move of which a part is within reach of the stock and said not to be, or the other way
-    round; -1 where there is none."""
+    """Return the number of a move of which a part is within reach of the stock and said not to be, or the
+    other way round; -1 where there is none.
+    """
     program = walk.program
     stock, moves = program.stock, program.moves
     assert stock is not None
@@ -201,13 +213,13 @@ def wrong_piece(
     long = np.hypot(*(moves.end - moves.start)[:, :2].T)
     long = np.where(walk.is_round, walk.radius * np.abs(walk.sweep), long)
     for _ in range(MOST_HALVINGS):
-        middle = walk.at(move, (first + last) / 2)
-        one, other = walk.at(move, first), walk.at(move, last)
+        middle = walk.compute_places_at(move, (first + last) / 2)
+        one, other = walk.compute_places_at(move, first), walk.compute_places_at(move, last)
         half = long[move] * (last - first) / 2
         turned = np.minimum(np.abs(walk.sweep[move]) * (last - first), 2 * pi)
         sagitta = np.where(walk.is_round[move], walk.radius[move] * (1.0 - np.cos(turned / 2)), 0.0)
-        low, high = ground.bounds(one, other, middle, half, sagitta)
-        inside = ground.encloses(middle)
+        low, high = ground.bound_distances(one, other, middle, half, sagitta)
+        inside = ground.contains(middle)
         sure = np.where(
             within, (high <= reach + OFF) | (inside & (low > 0.0)), ~inside & (low >= reach - OFF)
         )
@@ -216,7 +228,7 @@ def wrong_piece(
             return -1
         # What is wrong in the middle is wrong.
         point = middle[left]
-        away = np.min([edge.distance(point) for loop in ground.loops for edge in loop], axis=0)
+        away = np.min([edge.measure_distance(point) for loop in ground.loops for edge in loop], axis=0)
         meets = inside[left] | (away < reach[left])
         wrong = (meets != within[left]) & (inside[left] | (np.abs(away - reach[left]) > OFF))
         if wrong.any():

@@ -34,9 +34,9 @@ from workhold.model.support_request import SupportRequest
 __all__ = [
     "Hole",
     "SupportPlaces",
-    "inside_of",
-    "missing_triples",
-    "room_on",
+    "measure_depth_inside",
+    "find_missing_triples",
+    "measure_room_on",
 ]
 
 Array = NDArray[np.float64]
@@ -75,22 +75,22 @@ class SupportPlaces:
     def toolkit(self) -> Toolkit:
         return self.query.toolkit
 
-    def point_of(self, hole: Hole) -> tuple[float, float]:
-        """The place of a hole in the part's coordinates."""
+    def find_hole_place(self, hole: Hole) -> tuple[float, float]:
+        """Return the place of a hole in the part's coordinates."""
         name, column, row = hole
-        place = self.toolkit.carrier(name).place(column, row, self.fixture.travel)
+        place = self.toolkit.find_carrier(name).place(column, row, self.fixture.travel)
         x, y = self.fixture.pose.inverse.apply(*place)
         return float(x), float(y)
 
-    def pad_room(self, hole: Hole) -> float:
-        """The slack in mm by which a pad keeps its rules."""
-        asked, point = self.request, self.point_of(hole)
+    def compute_pad_room(self, hole: Hole) -> float:
+        """Return the slack in mm by which a pad keeps its rules."""
+        asked, point = self.request, self.find_hole_place(hole)
         loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
-        room = room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
+        room = measure_room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
         room -= asked.pad_radius + asked.pad_margin
         for peg, place in zip(self.fixture.pegs, self.pegs, strict=True):
             if peg in self.fixture.placed:
-                body = self.toolkit.carrier(peg.carrier).body_radius
+                body = self.toolkit.find_carrier(peg.carrier).body_radius
                 room = min(room, hypot(point[0] - place[0], point[1] - place[1]) - asked.pad_radius - body)
         return room
 
@@ -103,21 +103,30 @@ class SupportPlaces:
         beside = [(asked.rising, asked.rising_heights), (asked.hanging, asked.hanging_heights)]
         return [
             TopLevel(
-                faces_by_size([borders_of(one) for one, z in zip(loops, heights, strict=True) if z == level]),
-                *([borders_of(one) for one, z in zip(*pair, strict=True) if z == level] for pair in beside),
+                sort_faces_by_size(
+                    [split_borders(one) for one, z in zip(loops, heights, strict=True) if z == level]
+                ),
+                *(
+                    [split_borders(one) for one, z in zip(*pair, strict=True) if z == level]
+                    for pair in beside
+                ),
             )
             for level in dict.fromkeys(heights)
         ]
 
-    def tip_room(self, point: tuple[float, float]) -> float:
-        """The slack in mm by which the tip keeps the rules of the top."""
+    def compute_tip_room(self, point: tuple[float, float]) -> float:
+        """Return the slack in mm by which the tip keeps the rules of the top."""
         asked, room = self.request, -inf
         for level in self.top_levels:
-            kept = gap_of(level.rising, point) - asked.head_radius
+            kept = measure_gap(level.rising, point) - asked.head_radius
             for face in level.faces:
-                on = min(side * reach(one, point) for one, side in face) - asked.tip_radius - asked.tip_margin
+                on = (
+                    min(side * measure_reach(one, point) for one, side in face)
+                    - asked.tip_radius
+                    - asked.tip_margin
+                )
                 room = max(room, min(on, kept))
-        off = (reach(borders_of(zone.loop), point) for zone in asked.top_zones)
+        off = (measure_reach(split_borders(zone.loop), point) for zone in asked.top_zones)
         room = min(room, *(-one - asked.tip_radius for one in off), inf)
         if asked.reach is not None:
             x, y = self.fixture.pose.apply(*point)
@@ -127,19 +136,22 @@ class SupportPlaces:
             room = min(room, max(rings, default=-inf))
         return room
 
-    def hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
-        """How the tip stands: 0 with the part under all of it, 1 under its middle, 2 with air below.
+    def classify_hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
+        """Return how the tip stands: 0 with the part under all of it, 1 under its middle, 2 with air below.
 
         By so much ``slack`` in mm the middle and the border of the tip may be over air and yet count as not.
         """
         for level in self.top_levels:
-            if any(all(side * reach(one, point) > -AGREEMENT for one, side in face) for face in level.faces):
-                gap = gap_of(level.hanging, point) + slack
+            if any(
+                all(side * measure_reach(one, point) > -AGREEMENT for one, side in face)
+                for face in level.faces
+            ):
+                gap = measure_gap(level.hanging, point) + slack
                 return 2 if gap < 0.0 else 1 if gap < self.request.tip_radius else 0
         return 0
 
-    def travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
-        """Whether pegs and supports fit their plates, and the opening of what moves."""
+    def find_travel(self, holes: Sequence[Hole]) -> tuple[bool, float | None]:
+        """Return whether pegs and supports fit their plates, and the opening of what moves."""
         toolkit, plates = self.toolkit, self.toolkit.plates
         taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
         for name, column, row in holes:
@@ -149,7 +161,7 @@ class SupportPlaces:
             for name, places in taken.items()
         }
         for peg in self.fixture.pegs:
-            carrier = toolkit.carrier(peg.carrier)
+            carrier = toolkit.find_carrier(peg.carrier)
             for axis, number in enumerate((peg.column, peg.row)):
                 if carrier.stands_on in lines and carrier.counted[axis]:
                     lines[carrier.stands_on][axis].append(number)
@@ -181,7 +193,7 @@ class SupportPlaces:
         opened -= back * step
         fits = fits and back <= room and opened >= moving.travel.least - AGREEMENT
         if fits and len(plates) > 1 and any(plate.blocked for plate in plates):
-            clear = opened_clear_of_blocked(toolkit, self.fixture, [*holes])
+            clear = find_widest_clear_opening(toolkit, self.fixture, [*holes])
             return clear is not None, clear
         return fits, opened
 
@@ -192,7 +204,7 @@ class TopLevel:
 
     Parameters
     ----------
-    faces : the loops of each, see :func:`faces_by_size`.
+    faces : the loops of each, see :func:`sort_faces_by_size`.
     rising, hanging : loops around what rises above them, and around what of them has air below.
     """
 
@@ -201,20 +213,20 @@ class TopLevel:
     hanging: list[Loop]
 
 
-def borders_of(loop: Array) -> Loop:
+def split_borders(loop: Array) -> Loop:
     return tuple(loop_segments(np.asarray(loop)))
 
 
-def gap_of(loops: Sequence[Loop], point: tuple[float, float]) -> float:
-    """How far a point is from a region that loops have on their left, in mm; negative in it."""
+def measure_gap(loops: Sequence[Loop], point: tuple[float, float]) -> float:
+    """Return how far a point is from a region that loops have on their left, in mm; negative in it."""
     near = min((measure_distance_to_segment(point, one) for loop in loops for one in loop), default=inf)
-    return -near if sum(turns_about(loop, point) for loop in loops) > 0 else near
+    return -near if sum(count_turns_about(loop, point) for loop in loops) > 0 else near
 
 
-def holes_near(rules: SupportPlaces) -> Iterator[Hole]:
-    """All holes of the plates under the box of the face that supports may touch."""
+def list_holes_near(rules: SupportPlaces) -> Iterator[Hole]:
+    """Yield all holes of the plates under the box of the face that supports may touch."""
     loops = rules.query.workpiece.loops if rules.request.bottom is None else rules.request.bottom
-    boxes = np.array([bounding_box(one) for loop in loops for one in borders_of(loop)])
+    boxes = np.array([bounding_box(one) for loop in loops for one in split_borders(loop)])
     if not len(boxes):
         return
     (x0, y0), (x1, y1) = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
@@ -243,7 +255,7 @@ class ClampCells:
     slack: dict[tuple[int, int, int], float] = field(factory=dict, init=False)
 
     def has_place(self, triangle: Array) -> bool | None:
-        """Whether the clamp may stand inside a triangle (3, 2) by more than rounding; None: undecided."""
+        """Return whether the clamp may stand inside a triangle (3, 2) by more than rounding; None: undecided."""
         number = count()
         queue = [(-inf, next(number), (0, 0, 0))]
         while queue:
@@ -255,22 +267,22 @@ class ClampCells:
             width = self.size / 2 ** (level + 1)
             for cell in product((level + 1,), (2 * i, 2 * i + 1), (2 * j, 2 * j + 1)):
                 x, y = (float(self.low[k]) + (cell[1 + k] + 0.5) * width for k in (0, 1))
-                kept = inside_of(triangle, x, y) - self.rules.request.inside
+                kept = measure_depth_inside(triangle, x, y) - self.rules.request.inside
                 if kept + width / sqrt(2) > AGREEMENT:
-                    kept = min(kept, self.tip_slack(cell, x, y))
+                    kept = min(kept, self.compute_tip_slack(cell, x, y))
                 if kept > AGREEMENT:
                     return True
                 heappush(queue, (-kept - width / sqrt(2), next(number), cell))
         return False
 
-    def tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
+    def compute_tip_slack(self, cell: tuple[int, int, int], x: float, y: float) -> float:
         if cell not in self.slack:
-            self.slack[cell] = self.rules.tip_room((x, y))
+            self.slack[cell] = self.rules.compute_tip_room((x, y))
         return self.slack[cell]
 
 
-def inside_of(triangle: Array, x: float, y: float) -> float:
-    """How far a point is inside a triangle, in mm."""
+def measure_depth_inside(triangle: Array, x: float, y: float) -> float:
+    """Return how far a point is inside a triangle, in mm."""
     (ax, ay), (bx, by), (cx, cy) = triangle.tolist()
     turn = 1.0 if (bx - ax) * (cy - ay) > (by - ay) * (cx - ax) else -1.0
     sides = (ax, ay, bx, by), (bx, by, cx, cy), (cx, cy, ax, ay)
@@ -278,23 +290,23 @@ def inside_of(triangle: Array, x: float, y: float) -> float:
     return float(min(turn * one for one in far))
 
 
-def large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
-    """Which triangles (N, 3, 2) have a circle of a radius within them by more than rounding."""
+def are_large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
+    """Return which triangles (N, 3, 2) have a circle of a radius within them by more than rounding."""
     a, b, c = np.moveaxis(points, 1, 0)
     twice = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
     around = sum(np.hypot(*(q - p).T) for p, q in ((a, b), (b, c), (c, a)))
     return np.asarray(twice > (inside + AGREEMENT) * around)
 
 
-def missing_triples(
+def find_missing_triples(
     rules: SupportPlaces, listed: Iterable[Iterable[Hole]], positions: int
 ) -> tuple[list[str], int]:
-    """What speaks against a list that says it is complete, and for how many triples nobody can say.
+    """Return what speaks against a list that says it is complete, and for how many triples nobody can say.
 
     Triples have their holes in any order. ``positions`` is how many holes could hold a support, as the list
     says.
     """
-    rooms = {hole: rules.pad_room(hole) for hole in holes_near(rules)}
+    rooms = {hole: rules.compute_pad_room(hole) for hole in list_holes_near(rules)}
     sure = sorted(hole for hole, room in rooms.items() if room > AGREEMENT)
     possible = sum(room > -AGREEMENT for room in rooms.values())
     faults = []
@@ -302,30 +314,30 @@ def missing_triples(
         faults.append(f"counts say that {positions} holes could hold a support, but {len(sure)} could")
     known = {frozenset(triple) for triple in listed}
     undecided = 0
-    for triple, triangle, cells in possible_triples(rules, sure):
-        if frozenset(triple) in known or not rules.travel(triple)[0]:
+    for triple, triangle, cells in list_possible_triples(rules, sure):
+        if frozenset(triple) in known or not rules.find_travel(triple)[0]:
             continue
         has_place = cells.has_place(triangle)
         undecided += has_place is None
         if has_place:
-            faults.append(f"the triple of supports in {', '.join(map(words_of, triple))} is missing")
+            faults.append(f"the triple of supports in {', '.join(map(describe_hole, triple))} is missing")
             if len(faults) >= MOST_NAMED:
                 break
     return faults, undecided
 
 
-def possible_triples(
+def list_possible_triples(
     rules: SupportPlaces, holes: list[Hole]
 ) -> Iterator[tuple[list[Hole], Array, ClampCells]]:
-    """Triples of holes, with corners, of which each two fit the plates and the triangle is large enough."""
+    """Yield the triples of holes, with corners, of which each two fit the plates and the triangle is large enough."""
     if len(holes) < 3:
         return
-    points = np.array([rules.point_of(hole) for hole in holes])
+    points = np.array([rules.find_hole_place(hole) for hole in holes])
     low = points.min(axis=0)
     cells = ClampCells(rules, low, float(np.ptp(points, axis=0).max()))
     fits = np.zeros((len(holes), len(holes)), bool)
     for i, j in combinations(range(len(holes)), 2):
-        fits[i, j] = rules.travel([holes[i], holes[j]])[0]
+        fits[i, j] = rules.find_travel([holes[i], holes[j]])[0]
     for i in range(len(holes) - 2):
         others = np.flatnonzero(fits[i])
         first, second = np.triu_indices(len(others), 1)
@@ -333,18 +345,19 @@ def possible_triples(
         pairs = pairs[fits[pairs[:, 0], pairs[:, 1]]]
         corner = np.broadcast_to(points[i], (len(pairs), 2))
         triangles = np.stack([corner, points[pairs[:, 0]], points[pairs[:, 1]]], axis=1)
-        for one in np.flatnonzero(large_enough(triangles, rules.request.inside)).tolist():
+        for one in np.flatnonzero(are_large_enough(triangles, rules.request.inside)).tolist():
             yield [holes[i], *(holes[k] for k in pairs[one].tolist())], triangles[one], cells
 
 
-def words_of(hole: Hole) -> str:
-    """A hole by its carrier, column and row as the file counts them."""
+def describe_hole(hole: Hole) -> str:
+    """Return a hole by its carrier, column and row as the file counts them."""
     name, column, row = hole
     return f"{name} ({column}, {row})"
 
 
-def opened_clear_of_blocked(toolkit: Toolkit, fixture: Fixture, holes: list[Hole]) -> float | None:
-    """The widest opening in mm at which no peg and no support stands in a blocked hole, if there is one.
+def find_widest_clear_opening(toolkit: Toolkit, fixture: Fixture, holes: list[Hole]) -> float | None:
+    """Return the widest opening in mm at which no peg and no support stands in a blocked hole, if there is
+    one.
 
     All ways to count the columns of both jaws and their rows otherwise are tried.
     """
@@ -378,8 +391,8 @@ def opened_clear_of_blocked(toolkit: Toolkit, fixture: Fixture, holes: list[Hole
     return widest
 
 
-def turns_about(segments: Loop, point: tuple[float, float]) -> int:
-    """How often a loop runs around a point off it."""
+def count_turns_about(segments: Loop, point: tuple[float, float]) -> int:
+    """Return how often a loop runs around a point off it."""
     turned = 0.0
     for one in segments:
         places = [one.start, one.end]
@@ -394,22 +407,22 @@ def turns_about(segments: Loop, point: tuple[float, float]) -> int:
     return round(turned / (2 * pi))
 
 
-def room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
-    """How large a disc about a point lies on a face and over no zone, in mm; negative off it."""
-    faces = faces_by_size([borders_of(loop) for loop in loops])
-    room = max((min(side * reach(one, point) for one, side in face) for face in faces), default=-inf)
-    off = (reach(borders_of(zone), point) for zone in zones)
+def measure_room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
+    """Return how large a disc about a point lies on a face and over no zone, in mm; negative off it."""
+    faces = sort_faces_by_size([split_borders(loop) for loop in loops])
+    room = max((min(side * measure_reach(one, point) for one, side in face) for face in faces), default=-inf)
+    off = (measure_reach(split_borders(zone), point) for zone in zones)
     return min(room, *(-one for one in off), inf)
 
 
-def reach(loop: Loop, point: tuple[float, float]) -> float:
-    """Distance of a point from a loop in mm, negative outside it."""
+def measure_reach(loop: Loop, point: tuple[float, float]) -> float:
+    """Return the distance of a point from a loop in mm, negative outside it."""
     near = min(measure_distance_to_segment(point, one) for one in loop)
-    return near if turns_about(loop, point) else -near
+    return near if count_turns_about(loop, point) else -near
 
 
-def faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
-    """Loops of each face with 1 for its border, which comes first, and -1 for its openings.
+def sort_faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
+    """Return the loops of each face with 1 for its border, which comes first, and -1 for its openings.
 
     The first loop is a border. Of the others a loop is an opening where there is a face on its left. That is
     within a loop that runs counter-clockwise; one that runs the other way is never a border.
@@ -420,7 +433,7 @@ def faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
         loop = loops[number]
         (x, y), (nx, ny) = loop[0].middle, loop[0].normal()
         probe = (x - PROBE * nx, y - PROBE * ny)
-        under = [face for face in faces if all(side * reach(one, probe) > 0 for one, side in face)]
+        under = [face for face in faces if all(side * measure_reach(one, probe) > 0 for one, side in face)]
         if number and under:
             under[-1].append((loop, -1))
         elif number == 0 or sizes[number] > 0:

@@ -21,7 +21,7 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.files.result.parts import checked_head
+from workhold.files.result.parts import check_head
 from workhold.files.supports_forms import (
     FORMAT,
     ReadFigures,
@@ -33,17 +33,17 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.support_request import SpatialLoad, SupportRequest
-from workhold.verification.reading import fixtures_of
+from workhold.verification.reading import read_fixtures
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.support_listing import (
     Hole,
     SupportPlaces,
-    inside_of,
-    missing_triples,
+    find_missing_triples,
+    measure_depth_inside,
 )
 from workhold.verification.verify import Judge, Unproven, Verification
 
-__all__ = ["SupportsJudge", "band_faults", "is_supports_file", "verify_supports_file"]
+__all__ = ["SupportsJudge", "find_band_faults", "is_supports_file", "verify_supports_file"]
 
 Array = NDArray[np.float64]
 # mm, or parts of a figure: what is written agrees with what is derived to this.
@@ -55,7 +55,7 @@ GRID = 12
 
 
 def is_supports_file(path: str | Path) -> bool:
-    """Whether a file says at its beginning that it is one of supports."""
+    """Return whether a file says at its beginning that it is one of supports."""
     path = Path(path)
     if not path.is_file():
         return False
@@ -95,8 +95,9 @@ class SupportsJudge(SupportPlaces):
             pushes.append((-nx, -ny))
         return np.array(pushes)
 
-    def balances(self, supports: Array) -> Array:
-        """Support forces (K, 3, 7) per unit of each right side of the balance, at the corners of the bands.
+    def solve_balances(self, supports: Array) -> Array:
+        """Return the support forces (K, 3, 7) per unit of each right side of the balance, at the corners of
+        the bands.
 
         The columns of the balance are the contacts. Its rows are three forces, three moments, and the push on
         what moves; with two clamps the push of each stands for itself.
@@ -114,7 +115,7 @@ class SupportsJudge(SupportPlaces):
             ):
                 at, way = np.array([*place, heights[k]]), np.array([*push, 0.0])
                 matrix[:3, k], matrix[3:6, k] = way, np.cross(at, way)
-                carrier = toolkit.carrier(peg.carrier)
+                carrier = toolkit.find_carrier(peg.carrier)
                 if carrier.travel is None:
                     continue
                 x, y = carrier.travel.unit
@@ -128,10 +129,10 @@ class SupportsJudge(SupportPlaces):
             out.append(np.linalg.inv(matrix)[count:])
         return np.array(out)
 
-    def right_side(
+    def make_right_side(
         self, point: Sequence[float], force: Sequence[float], moment: Sequence[float], jaw: float
     ) -> Array:
-        """What the contacts have to balance: a force at a point, a moment, and the push on what moves."""
+        """Return what the contacts have to balance: a force at a point, a moment, and the push on what moves."""
         pair = self.fixture.pair
         share = (
             [1.0]
@@ -141,19 +142,19 @@ class SupportsJudge(SupportPlaces):
         turning = np.cross(point, force) + np.asarray(moment)
         return np.concatenate([-np.asarray(force, float), -turning, jaw * np.array(share)])
 
-    def extremes(self, solved: Array) -> tuple[Array, Array]:
-        """Least and greatest support forces without the clamp, over all loads and heights."""
+    def find_extremes(self, solved: Array) -> tuple[Array, Array]:
+        """Return the least and greatest support forces without the clamp, over all loads and heights."""
         least, most = np.full(3, inf), np.full(3, -inf)
         for load in self.loads:
             low, high = map(radians, load.directions)
             heights = load.heights or (self.request.thickness,) * 2
             for place, z, axial in product(load.points or ((0.0, 0.0),), set(heights), set(load.axial)):
                 at = [*place, z]
-                still = solved @ self.right_side(
+                still = solved @ self.make_right_side(
                     at, [0, 0, -axial], [*load.tilt, load.moment], self.jaw_force
                 )
-                x = solved @ self.right_side(at, [load.force, 0, 0], [0, 0, 0], 0.0)
-                y = solved @ self.right_side(at, [0, load.force, 0], [0, 0, 0], 0.0)
+                x = solved @ self.make_right_side(at, [load.force, 0, 0], [0, 0, 0], 0.0)
+                y = solved @ self.make_right_side(at, [0, load.force, 0], [0, 0, 0], 0.0)
                 peak = np.arctan2(y, x)
                 angles = [np.full(x.shape, low), np.full(x.shape, high)]
                 for turn in (peak, peak + pi):
@@ -163,38 +164,38 @@ class SupportsJudge(SupportPlaces):
                 most = np.maximum(most, np.max(values, axis=(0, 1)))
         return least, most
 
-    def shares(self, solved: Array, point: Sequence[float]) -> Array:
-        """What each support takes of a unit of clamp force at a point."""
-        return np.asarray((solved @ self.right_side([*point, 0.0], [0, 0, -1.0], [0, 0, 0], 0.0))[0])
+    def compute_shares(self, solved: Array, point: Sequence[float]) -> Array:
+        """Return what each support takes of a unit of clamp force at a point."""
+        return np.asarray((solved @ self.make_right_side([*point, 0.0], [0, 0, -1.0], [0, 0, 0], 0.0))[0])
 
-    def faults(self, part: ReadTriple) -> Iterator[str]:
-        """Everything that speaks against a triple, one sentence each, without a full stop."""
+    def find_faults(self, part: ReadTriple) -> Iterator[str]:
+        """Yield everything that speaks against a triple, one sentence each, without a full stop."""
         holes = [(str(a), b, c) for a, b, c in part.holes]
         names = {plate.name for plate in self.toolkit.plates}
         if any(name not in names for name, _, _ in holes) or len(set(holes)) != 3:
             yield "it does not stand in three holes of the plates"
             return
         for hole in holes:
-            if self.pad_room(hole) < -AGREEMENT:
-                yield f"the pad in {hole} breaks its rules by {-self.pad_room(hole):.3g} mm"
-        fits, opened = self.travel(holes)
+            if self.compute_pad_room(hole) < -AGREEMENT:
+                yield f"the pad in {hole} breaks its rules by {-self.compute_pad_room(hole):.3g} mm"
+        fits, opened = self.find_travel(holes)
         if not fits:
             yield "pegs and supports do not fit the columns, the rows or the gap"
         elif (opened is None) != (part.jaw_separation is None) or (
             opened is not None and abs(opened - (part.jaw_separation or 0.0)) > AGREEMENT
         ):
             yield f"the jaw separation is {opened}, and is written as {part.jaw_separation}"
-        supports = np.array([self.point_of(hole) for hole in holes])
+        supports = np.array([self.find_hole_place(hole) for hole in holes])
         if abs(np.linalg.det(np.column_stack([supports, np.ones(3)]))) < AGREEMENT:
             yield "its supports are on one line"
             return
-        yield from self.figure_faults(part, supports)
+        yield from self.find_figure_faults(part, supports)
 
-    def figure_faults(self, part: ReadTriple, supports: Array) -> Iterator[str]:
-        """Whether figures are those of the balance, and no clamp place that is tried is better."""
-        solved = self.balances(supports)
-        least, most = self.extremes(solved) if self.loads else (np.zeros(3), np.zeros(3))
-        jaw = solved @ self.right_side([0, 0, 0], [0, 0, 0], [0, 0, 0], 1.0)
+    def find_figure_faults(self, part: ReadTriple, supports: Array) -> Iterator[str]:
+        """Check whether figures are those of the balance, and no clamp place that is tried is better."""
+        solved = self.solve_balances(supports)
+        least, most = self.find_extremes(solved) if self.loads else (np.zeros(3), np.zeros(3))
+        jaw = solved @ self.make_right_side([0, 0, 0], [0, 0, 0], [0, 0, 0], 1.0)
         places: list[tuple[str, ReadFigures, Sequence[float] | None]] = [("best", part.best, part.best.at)]
         if part.given is not None:
             places.append(("given", part.given, list(self.request.point or ())))
@@ -202,11 +203,13 @@ class SupportsJudge(SupportPlaces):
             if at is None or len(at) != 2:
                 yield f"the {name} clamp point is missing"
                 continue
-            shares, arm = self.shares(solved, at), inside_of(supports, *at)
-            hangs = [self.hanging_at((at[0], at[1]), slack) == 2 for slack in (-AGREEMENT, AGREEMENT)]
+            shares, arm = self.compute_shares(solved, at), measure_depth_inside(supports, *at)
+            hangs = [
+                self.classify_hanging_at((at[0], at[1]), slack) == 2 for slack in (-AGREEMENT, AGREEMENT)
+            ]
             if figures.hangs not in hangs:
                 yield f"the {name} clamp point is{' not' if figures.hangs else ''} over air, and is written otherwise"
-            if self.tip_room((at[0], at[1])) < -AGREEMENT or arm < self.request.inside - AGREEMENT:
+            if self.compute_tip_room((at[0], at[1])) < -AGREEMENT or arm < self.request.inside - AGREEMENT:
                 yield f"the clamp may not stand at the {name} point"
                 continue
             need = max(0.0, float((-least / shares).max()))
@@ -218,73 +221,80 @@ class SupportsJudge(SupportPlaces):
             }
             if self.loads:
                 known["support_force"] = max(0.0, float((need * shares + most).max()))
-            yield from other_figures(name, figures, known)
-        center = inside_of(supports, *area_center(self.query.workpiece.loop_segments))
+            yield from compare_figures(name, figures, known)
+        center = measure_depth_inside(supports, *compute_area_center(self.query.workpiece.loop_segments))
         if differs(part.standing, center):
             yield f"standing is {center:.9g}, and is written as {part.standing:.9g}"
         points = [point for load in self.loads for point in load.points]
         if points:
-            over = max(-inside_of(supports, *point) for point in points)
+            over = max(-measure_depth_inside(supports, *point) for point in points)
             if differs(part.overhang, over):
                 yield f"overhang is {over:.9g}, and is written as {part.overhang}"
-        if self.tip_room((part.arm_at[0], part.arm_at[1])) < -AGREEMENT or differs(
-            part.arm, inside_of(supports, *part.arm_at)
+        if self.compute_tip_room((part.arm_at[0], part.arm_at[1])) < -AGREEMENT or differs(
+            part.arm, measure_depth_inside(supports, *part.arm_at)
         ):
             yield f"the arm is not {part.arm:.9g}"
-        yield from self.better_places(part, supports, solved, least)
+        yield from self.find_better_places(part, supports, solved, least)
 
-    def hanging_of(self, part: ReadTriple) -> int:
-        """How the tip stands at the places of a triple, see :meth:`hanging_at`; of two the worse."""
+    def classify_hanging(self, part: ReadTriple) -> int:
+        """Return how the tip stands at the places of a triple, see :meth:`hanging_at`; of two the worse."""
         places = (part.best.at or part.arm_at, part.arm_at)
-        return max(self.hanging_at((x, y), AGREEMENT) for x, y in places)
+        return max(self.classify_hanging_at((x, y), AGREEMENT) for x, y in places)
 
     def order_of(self, part: ReadTriple) -> tuple[int, int, int]:
-        """What a triple is in order by before its figures: whether the part falls over, and the clamp's place.
+        """Return what a triple is in order by before its figures: whether the part falls over, and the
+        clamp's place.
 
         A place that is asked for comes before others, and one over the part before one over air.
         """
         falls = int(part.standing < -AGREEMENT)
         given = self.request.point if part.given is not None else None
         late = int(self.request.point is not None and given is None)
-        return falls, late, self.hanging_of(part) if given is None else self.hanging_at(given, AGREEMENT)
+        return (
+            falls,
+            late,
+            self.classify_hanging(part) if given is None else self.classify_hanging_at(given, AGREEMENT),
+        )
 
-    def better_places(self, part: ReadTriple, supports: Array, solved: Array, least: Array) -> Iterator[str]:
-        """A fault where a place of a grid over the triangle is better than the one written.
+    def find_better_places(
+        self, part: ReadTriple, supports: Array, solved: Array, least: Array
+    ) -> Iterator[str]:
+        """Yield a fault where a place of a grid over the triangle is better than the one written.
 
         One under which the part reaches down is better than one over air.
         """
-        highest = self.hanging_of(part)
+        highest = self.classify_hanging(part)
         for i, j in product(range(1, GRID), repeat=2):
             if i + j >= GRID:
                 continue
             x, y = np.array([i, j, GRID - i - j]) / GRID @ supports
-            arm = inside_of(supports, x, y)
+            arm = measure_depth_inside(supports, x, y)
             if arm < self.request.inside:
                 continue
-            need = max(0.0, float((-least / self.shares(solved, (x, y))).max()))
+            need = max(0.0, float((-least / self.compute_shares(solved, (x, y))).max()))
             cheaper = need < part.best.clamp_needed * (1 - AGREEMENT) - AGREEMENT
             farther = arm > part.arm * (1 + AGREEMENT) + AGREEMENT
-            if not (cheaper or farther or highest) or self.tip_room((x, y)) <= 0:
+            if not (cheaper or farther or highest) or self.compute_tip_room((x, y)) <= 0:
                 continue
-            hanging = self.hanging_at((x, y), -AGREEMENT)
+            hanging = self.classify_hanging_at((x, y), -AGREEMENT)
             if hanging < highest or (hanging == highest and (cheaper or farther)):
                 yield f"the clamp is better placed at ({x:.6g}, {y:.6g})"
                 return
 
 
 def differs(written: float | None, own: float) -> bool:
-    """Whether a number is missing or another one."""
+    """Return whether a number is missing or another one."""
     return written is None or abs(written - own) > AGREEMENT * max(1.0, abs(own))
 
 
-def other_figures(name: str, figures: ReadFigures, known: dict[str, float]) -> Iterator[str]:
+def compare_figures(name: str, figures: ReadFigures, known: dict[str, float]) -> Iterator[str]:
     for key, value in known.items():
         if differs(getattr(figures, key), value):
             yield f"{key} at the {name} point is {value:.9g}, and is written as {getattr(figures, key)}"
 
 
-def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
-    """The centre of area of the part, from integrals along its border (Gauss-Legendre along each segment)."""
+def compute_area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
+    """Return the centre of area of the part, from integrals along its border (Gauss-Legendre along each segment)."""
     nodes, weights = np.polynomial.legendre.leggauss(24)
     area = first = second = 0.0
     for one in (segment for loop in loops for segment in loop):
@@ -304,8 +314,8 @@ def area_center(loops: Sequence[Sequence[Segment]]) -> tuple[float, float]:
     return first / area, second / area
 
 
-def band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
-    """A fault for each peg whose band is not what it can press on of the faces of the solid that it touches."""
+def find_band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iterator[str]:
+    """Yield a fault for each peg whose band is not what it can press on of the faces of the solid that it touches."""
     bands, numbered = request.bands, query.workpiece.numbered
     if query.workpiece.solid is None or bands is None:
         return
@@ -324,7 +334,7 @@ def band_faults(query: Query, fixture: Fixture, request: SupportRequest) -> Iter
 
 
 def verify_supports_file(path: str | Path) -> Verification:
-    """Derives the planar fixture and every triple of a file of supports again.
+    """Derive the planar fixture and every triple of a file of supports again.
 
     Raises
     ------
@@ -333,13 +343,13 @@ def verify_supports_file(path: str | Path) -> Verification:
     """
     path = Path(path)
     part = read_supports_part(path)
-    head = checked_head(part.head(), path)
+    head = check_head(part.to_head(), path)
     try:
-        query, request = head.query(), part.request()
+        query, request = head.to_query(), part.to_request()
         loads = tuple(load.load(request.thickness) for load in part.loads)
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
-    fixture = ToolkitRules.of(query).taken(fixtures_of([part.fixture], path)[0])
+    fixture = ToolkitRules.from_query(query).complete_fixture(read_fixtures([part.fixture], path)[0])
     planar = Judge(query).rule_on(evolve(fixture, quality={}))
     judge = SupportsJudge(query, fixture, request, loads, part.jaw_force)
     unproven, faults, seen = list[Unproven](), list[str](), set[frozenset[Hole]]()
@@ -347,7 +357,7 @@ def verify_supports_file(path: str | Path) -> Verification:
     if planar.verdict != "proven":
         faults.append(f"its planar fixture is {planar.verdict}: {planar.reason}")
     for place, triple in enumerate(part.triples):
-        reasons = [*judge.faults(triple)]
+        reasons = [*judge.find_faults(triple)]
         key = frozenset((str(a), b, c) for a, b, c in triple.holes)
         reasons += ["it is listed twice"] if key in seen else []
         seen.add(key)
@@ -359,12 +369,12 @@ def verify_supports_file(path: str | Path) -> Verification:
         before = max(before, order)
         if reasons:
             unproven.append(Unproven(place, "refuted", reasons[0]))
-    faults += band_faults(query, fixture, request)
+    faults += find_band_faults(query, fixture, request)
     counted, undecided = part.counts.triples, 0
     if counted != len(part.triples) if part.complete else (counted or inf) < len(part.triples):
         faults.append(f"counts say {counted} triples, but {len(part.triples)} are listed")
     if part.complete and planar.verdict == "proven":
-        missing, undecided = missing_triples(judge, seen, part.counts.positions)
+        missing, undecided = find_missing_triples(judge, seen, part.counts.positions)
         faults += missing
     refuted = len(unproven)
     return Verification(

@@ -32,7 +32,7 @@ from collections.abc import Iterator
 from attrs import frozen
 from flint import arb
 
-__all__ = ["Finding", "number", "rule", "written"]
+__all__ = ["Finding", "number", "judge_slack", "judge_written_number"]
 
 # mm. A gap, an opening, a contact margin or the distance from a keep-out zone is met when it is missed by at
 # most this; a contact may lie so far past a tangent joint, and lies more than this inside any other end.
@@ -124,8 +124,8 @@ class Finding:
     reason: str
 
 
-def rule(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
-    """Nothing when a slack is certainly positive, otherwise the finding in the words for its case.
+def judge_slack(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
+    """Yield nothing when a slack is certainly positive, otherwise the finding in the words for its case.
 
     Where there are none for the edge, those for a broken rule do.
     """
@@ -134,13 +134,15 @@ def rule(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
         yield Finding(definite, broken if definite or not edge else edge)
 
 
-def written(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
-    """Whether a number of the file is the derived one, to a hair and what may be spared besides."""
+def judge_written_number(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
+    """Check whether a number of the file is the derived one, to a hair and what may be spared besides."""
     slack = HAIR + spare - abs(derived - value)
     if not slack > 0:
-        yield from rule(slack, f"{name} is {value:.12g} in the file and comes to {float(derived.mid()):.12g}")
+        yield from judge_slack(
+            slack, f"{name} is {value:.12g} in the file and comes to {float(derived.mid()):.12g}"
+        )
 
 
 def number(value: arb) -> str:
-    """The middle of a ball, for messages."""
+    """Return the middle of a ball, for messages."""
     return f"{float(value.mid()):.3g}"

@@ -30,7 +30,7 @@ from workhold.model.query import Query
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tolerances import AGREEMENT
 
-__all__ = ["Element", "ToolWalk", "element_name", "elements_of", "program_fault", "walk_of"]
+__all__ = ["Element", "ToolWalk", "make_element_name", "list_elements", "find_program_fault", "walk_of"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -97,7 +97,7 @@ class Stretches:
         rest = (self.first, self.last, self.under, self.over, self.radius)
         return Stretches(self.move[chosen], *(values[chosen] for values in rest))
 
-    def halves(self) -> Stretches:
+    def halve(self) -> Stretches:
         middle = (self.first + self.last) / 2
         both = [np.concatenate([v, v]) for v in (self.move, self.under, self.over, self.radius)]
         first, last = np.concatenate([self.first, middle]), np.concatenate([middle, self.last])
@@ -125,7 +125,7 @@ class ToolWalk:
     is_box: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, program: Program) -> ToolWalk:
+    def from_program(cls, program: Program) -> ToolWalk:
         moves = program.moves
         start, end, bulge = moves.start[:, :2], moves.end[:, :2], moves.bulge
         chord = end - start
@@ -147,8 +147,8 @@ class ToolWalk:
             np.asarray(is_box),
         )
 
-    def stretches(self) -> Stretches:
-        """Every move with every cylinder of its tool, whole."""
+    def list_stretches(self) -> Stretches:
+        """Return every move with every cylinder of its tool, whole."""
         parts = []
         for number, tool in self.program.tools.items():
             moved = np.flatnonzero(self.program.moves.tool == number)
@@ -160,8 +160,8 @@ class ToolWalk:
         joined = [np.concatenate([getattr(part, name) for part in parts] or [[]]) for name in columns]
         return Stretches(joined[0].astype(np.int64), *joined[1:])
 
-    def at(self, move: IntArray, share: Array) -> Array:
-        """Places (N, 2) of the axis at shares of moves."""
+    def compute_places_at(self, move: IntArray, share: Array) -> Array:
+        """Return the places (N, 2) of the axis at shares of moves."""
         moves = self.program.moves
         start, end = moves.start[move, :2], moves.end[move, :2]
         straight = start + share[:, None] * (end - start)
@@ -169,15 +169,15 @@ class ToolWalk:
         bent = self.center[move] + self.radius[move, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
         return np.asarray(np.where(self.is_round[move, None], bent, straight))
 
-    def nearest(self, element: Element, line: object = None, tool: object = None) -> Nearest:
-        """Where the tools come nearest to an element; infinite where none comes down to its height.
+    def find_nearest(self, element: Element, line: object = None, tool: object = None) -> Nearest:
+        """Return where the tools come nearest to an element; infinite where none comes down to its height.
 
         Parameters
         ----------
         line, tool : of the program, the moves to look at; None for all.
         """
         found, at = inf, -1
-        waiting, low, moves = self.stretches(), inf, self.program.moves
+        waiting, low, moves = self.list_stretches(), inf, self.program.moves
         if line is not None:
             waiting = waiting.take((moves.line[waiting.move] == line) & (moves.tool[waiting.move] == tool))
         start, rise = moves.start[:, 2], (moves.end - moves.start)[:, 2]
@@ -198,15 +198,17 @@ class ToolWalk:
             least, most, top, long = least[there], most[there], top[there], long[there]
             if not len(move):
                 break
-            off, sagitta = self.distances(waiting, element, boxed)
+            off, sagitta = self.measure_distances(waiting, element, boxed)
             off -= waiting.radius + element.radius
             whole = (most <= element.height) & (top >= element.low)
             # Of a stretch that does not count all along, an end may.
             sure = np.where(whole, off + sagitta, inf)
             for z, share in ((one, waiting.first), (other, waiting.last)):
                 counts = (z <= element.height) & (from_below | (z + long >= element.low))
-                points = self.at(move, share)
-                at_end = self.chord_distances(points, points, element) - waiting.radius - element.radius
+                points = self.compute_places_at(move, share)
+                at_end = (
+                    self.measure_chord_distances(points, points, element) - waiting.radius - element.radius
+                )
                 sure = np.where(~whole & counts, np.minimum(sure, at_end), sure)
             best = int(sure.argmin())
             if sure[best] < found:
@@ -217,56 +219,61 @@ class ToolWalk:
             kept = ~done & (below < found - FINE)
             # What is let go is no lower than what is known, less what is asked for.
             low = min(low, float(below[~done & ~kept].min(initial=inf)))
-            waiting = waiting.take(kept).halves()
+            waiting = waiting.take(kept).halve()
             if not len(waiting.move):
                 break
         return Nearest(min(low, found), found, at)
 
-    def distances(
+    def measure_distances(
         self, stretches: Stretches, element: Element, boxed: NDArray[np.bool_]
     ) -> tuple[Array, Array]:
-        """Distances (N,) of the chords of stretches from an element, and their sagittas (N,)."""
+        """Return the distances (N,) of the chords of stretches from an element, and their sagittas (N,)."""
         move = stretches.move
-        one, other = self.at(move, stretches.first), self.at(move, stretches.last)
+        one, other = (
+            self.compute_places_at(move, stretches.first),
+            self.compute_places_at(move, stretches.last),
+        )
         sweep = np.abs(self.sweep[move]) * (stretches.last - stretches.first)
         bow = 2.0 * np.sin(np.minimum(sweep, np.pi) / 4) ** 2
         # An arc of half a turn or more is within its radius of its chord's ends.
         sagitta = np.where(self.is_round[move], np.where(sweep < np.pi, bow, 2.0) * self.radius[move], 0.0)
-        off = self.chord_distances(one, other, element)
+        off = self.measure_chord_distances(one, other, element)
         for k in np.flatnonzero(boxed).tolist():
             start, end = self.program.moves.start[move[k], :2], self.program.moves.end[move[k], :2]
-            off[k] = self.box_distance(start, end, element)
+            off[k] = self.measure_box_distance(start, end, element)
         return off, sagitta
 
-    def chord_distances(self, one: Array, other: Array, element: Element) -> Array:
-        """Distances (N,) of straight pieces or points from an element's middle line, or from a half plane."""
+    def measure_chord_distances(self, one: Array, other: Array, element: Element) -> Array:
+        """Return the distances (N,) of straight pieces or points from an element's middle line, or from a
+        half plane.
+        """
         start, end = np.array(element.start), np.array(element.end)
         if element.is_half_plane:
             return np.asarray(np.maximum(np.minimum((one - start) @ end, (other - start) @ end), 0.0))
-        ends = [point_to_piece(one, start, end), point_to_piece(other, start, end)]
-        ends += [pieces_to_point(one, other, start), pieces_to_point(one, other, end)]
+        ends = [measure_points_to_piece(one, start, end), measure_points_to_piece(other, start, end)]
+        ends += [measure_pieces_to_point(one, other, start), measure_pieces_to_point(one, other, end)]
         least = np.minimum.reduce(ends)
         return np.where(do_cross(one, other, start, end), 0.0, least)
 
-    def box_distance(self, one: Array, other: Array, element: Element) -> float:
-        """Distance from the box of two corners to an element's middle line, or to a half plane."""
+    def measure_box_distance(self, one: Array, other: Array, element: Element) -> float:
+        """Return the distance from the box of two corners to an element's middle line, or to a half plane."""
         (x0, y0), (x1, y1) = np.minimum(one, other), np.maximum(one, other)
         corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
-        sides = float(self.chord_distances(corners, np.roll(corners, -1, axis=0), element).min())
+        sides = float(self.measure_chord_distances(corners, np.roll(corners, -1, axis=0), element).min())
         inside = x0 <= element.start[0] <= x1 and y0 <= element.start[1] <= y1
         return 0.0 if inside and not element.is_half_plane else sides
 
 
-def point_to_piece(points: Array, start: Array, end: Array) -> Array:
-    """Distances (N,) of points from one straight piece, which may be a point."""
+def measure_points_to_piece(points: Array, start: Array, end: Array) -> Array:
+    """Return the distances (N,) of points from one straight piece, which may be a point."""
     along = end - start
     long = float(along @ along)
     share = np.clip((points - start) @ along / long, 0.0, 1.0) if long > 0.0 else np.zeros(len(points))
     return np.asarray(np.hypot(*(points - start - share[:, None] * along).T))
 
 
-def pieces_to_point(one: Array, other: Array, point: Array) -> Array:
-    """Distances (N,) of straight pieces, which may be points, from one point."""
+def measure_pieces_to_point(one: Array, other: Array, point: Array) -> Array:
+    """Return the distances (N,) of straight pieces, which may be points, from one point."""
     along = other - one
     long = (along * along).sum(axis=1)
     share = ((point - one) * along).sum(axis=1) / np.where(long > 0.0, long, 1.0)
@@ -274,8 +281,9 @@ def pieces_to_point(one: Array, other: Array, point: Array) -> Array:
 
 
 def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.bool_]:
-    """Which straight pieces (N,) have the ends of one on either side of them, and their own on either side of
-    it."""
+    """Return which straight pieces (N,) have the ends of one on either side of them, and their own on either
+    side of it.
+    """
 
     def side(a: Array, b: Array, c: Array) -> Array:
         return np.asarray((b - a)[..., 0] * (c - a)[..., 1] - (b - a)[..., 1] * (c - a)[..., 0])
@@ -286,20 +294,21 @@ def do_cross(one: Array, other: Array, start: Array, end: Array) -> NDArray[np.b
 
 @lru_cache(maxsize=8)
 def walk_of(program: Program) -> ToolWalk:
-    return ToolWalk.of(program)
+    return ToolWalk.from_program(program)
 
 
-def program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """What is wrong with a fixture and the program, in one sentence without a full stop; empty where nothing
-    is."""
+def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
+    """Return what is wrong with a fixture and the program, in one sentence without a full stop; empty where
+    nothing is.
+    """
     said = fixture.quality.get(PROGRAM_FIGURE.key)
     if query.passed is None:
         return "" if said is None else f"its {PROGRAM_FIGURE.words} is given, and there is no program"
     program, height = query.passed
     walk, least = walk_of(program), Nearest(inf, inf, -1)
-    elements = list(elements_of(fixture, hardware, height))
+    elements = list(list_elements(fixture, hardware, height))
     for element in elements:
-        near = walk.nearest(element)
+        near = walk.find_nearest(element)
         if near.high < program.clearance - AGREEMENT:
             return (
                 f"line {near.line} of the program brings a tool within {near.high:.6g} mm of {element.name}, "
@@ -313,11 +322,13 @@ def program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str
         )
     if said is not None and not least.low - AGREEMENT <= said <= least.high + AGREEMENT:
         return f"its {PROGRAM_FIGURE.words} is {said:.12g} in the file and comes to {least.high:.9g}"
-    return passing_fault(fixture, walk, elements, least)
+    return find_clearance_fault(fixture, walk, elements, least)
 
 
-def passing_fault(fixture: Fixture, walk: ToolWalk, elements: Sequence[Element], least: Nearest) -> str:
-    """What is wrong with what a file says of the nearest move, in a sentence; empty where nothing is."""
+def find_clearance_fault(
+    fixture: Fixture, walk: ToolWalk, elements: Sequence[Element], least: Nearest
+) -> str:
+    """Return what is wrong with what a file says of the nearest move, in a sentence; empty where nothing is."""
     said = fixture.passing
     if said is None:
         return ""
@@ -327,7 +338,7 @@ def passing_fault(fixture: Fixture, walk: ToolWalk, elements: Sequence[Element],
     if said["distance"] != fixture.quality.get(PROGRAM_FIGURE.key):
         return f"its {PROGRAM_FIGURE.words} is given twice, and differs"
     named = [one for one in elements if one.place == said["element"]]
-    near = min((walk.nearest(one, said["line"], said["tool"]).low for one in named), default=inf)
+    near = min((walk.find_nearest(one, said["line"], said["tool"]).low for one in named), default=inf)
     if near > least.high + AGREEMENT:
         return (
             f"T{said['tool']} does not come nearest in line {said['line']} of the program, to the "
@@ -336,8 +347,8 @@ def passing_fault(fixture: Fixture, walk: ToolWalk, elements: Sequence[Element],
     return ""
 
 
-def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iterator[Element]:
-    """Everything that holds a part, as it is written."""
+def list_elements(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iterator[Element]:
+    """Yield everything that holds a part, as it is written."""
     angle = radians(fixture.pose.theta_deg)
     cosine, sine = np.cos(angle), np.sin(angle)
 
@@ -350,27 +361,28 @@ def elements_of(fixture: Fixture, hardware: ToolkitRules, height: float) -> Iter
         low, top = wall.heights or (0.0, height)
         up = float(sine), float(cosine)
         yield Element(f"the {wall.noun}", wall.noun, seen(0.0, 0.0), up, 0.0, top, True, low)
-    for name, peg in hardware.placed(fixture):
+    for name, peg in hardware.list_placed(fixture):
         carrier = hardware.carriers[peg.carrier]
         low, top = carrier.heights or (0.0, height)
-        ends = seen(peg.x, peg.y), seen(*behind(peg, carrier))
-        whole = Element(name, element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low)
+        ends = seen(peg.x, peg.y), seen(*find_far_end(peg, carrier))
+        whole = Element(name, make_element_name(peg, hardware), *ends, carrier.peg_radius, top, low=low)
         yield whole
         if carrier.body_radius > carrier.peg_radius:
             yield evolve(whole, radius=carrier.body_radius, height=0.0, low=0.0)
 
 
-def element_name(peg: Peg, hardware: ToolkitRules) -> str:
-    """What files call a place at which something holds the part: by its hole, or by the wall."""
+def make_element_name(peg: Peg, hardware: ToolkitRules) -> str:
+    """Return what files call a place at which something holds the part: by its hole, or by the wall."""
     carrier = hardware.carriers[peg.carrier]
     if carrier in hardware.walls:
         return carrier.noun
     return f"{carrier.peg} {peg.hole}" if carrier.has_lattice else peg.hole
 
 
-def behind(peg: Peg, carrier: Carrier) -> tuple[float, float]:
-    """The other end of a peg's middle line: of a clamp that is bolted in a hole this hole, else its own
-    place."""
+def find_far_end(peg: Peg, carrier: Carrier) -> tuple[float, float]:
+    """Return the other end of a peg's middle line: of a clamp that is bolted in a hole this hole, else its
+    own place.
+    """
     if not carrier.has_body_behind:
         return peg.x, peg.y
     (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch

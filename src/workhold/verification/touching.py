@@ -45,153 +45,165 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
+    compute_dot_product,
+    compute_norm,
+    compute_square_root,
     cross,
-    dot,
-    norm,
-    root,
-    turned,
+    turn_vector,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.tolerances import HAIR, TANGENT, Finding, number, rule
+from workhold.verification.tolerances import HAIR, TANGENT, Finding, judge_slack, number
 
 __all__ = [
     "Barrier",
-    "barriers",
-    "edge_distances",
-    "length_of",
-    "on_circle",
-    "on_line",
-    "touching_findings",
+    "find_barriers",
+    "measure_edge_distances",
+    "measure_feature",
+    "find_points_on_circle",
+    "find_points_on_line",
+    "judge_touching",
 ]
 
 Barrier = tuple[arb, arb]
 
 
-def edge_distances(
+def measure_edge_distances(
     side: Side, radius: arb, beside: Iterable[Barrier], center: Point, smooth: tuple[bool, bool]
 ) -> list[arb]:
-    """Distances in mm along its contact feature from a peg's centre to every barrier and to ends of the side.
+    """Return the distances in mm along its contact feature from a peg's centre to every barrier and to ends
+    of the side.
 
     The ends are those that ``smooth`` calls no tangent joints. A whole circle has none. Nothing trims it:
     whatever else there is lies beyond the material behind it.
     """
     if isinstance(side, ArcSide) and side.whole:
         return []
-    slacks = side.slacks(center, radius)
+    slacks = side.compute_slacks(center, radius)
     place = slacks[0]
     ways = [low - place if place.mid() < low.mid() else place - high for low, high in beside]
     return ways + [slack for slack, joined in zip(slacks, smooth, strict=True) if not joined]
 
 
-def barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) -> list[Barrier]:
-    """The barriers on the way along a side of a peg ``radius`` mm from it; none on a whole circle.
+def find_barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) -> list[Barrier]:
+    """Return the barriers on the way along a side of a peg ``radius`` mm from it; none on a whole circle.
 
     ``body`` is the peg's own radius in mm, more than that where its flat lies on the side.
     """
     if (isinstance(side, ArcSide) and side.whole) or not body > HAIR:
         return []
-    extent = length_of(side, radius)
-    middle = way_point(side, radius, extent / 2)
+    extent = measure_feature(side, radius)
+    middle = compute_way_point(side, radius, extent / 2)
     found = []
     for other in others:
         # The distance from a side changes no faster than the place.
-        if other.distance(middle) > extent / 2 + body + HAIR:
+        if other.compute_distance(middle) > extent / 2 + body + HAIR:
             continue
-        wide = entered(side, radius, other, body + HAIR)
-        for low, high in entered(side, radius, other, body - HAIR):
+        wide = find_entered_ranges(side, radius, other, body + HAIR)
+        for low, high in find_entered_ranges(side, radius, other, body - HAIR):
             around = [pair for pair in wide if pair[0].mid() <= low.mid() and high.mid() <= pair[1].mid()]
             before, behind = around[0] if around else (low, high)
             found.append((before.union(low), high.union(behind)))
     return found
 
 
-def length_of(side: Side, radius: arb) -> arb:
-    """Length in mm of the untrimmed contact feature of a side."""
-    return side.length if isinstance(side, LineSide) else 2 * side.half_sweep * side.reach(radius)
+def measure_feature(side: Side, radius: arb) -> arb:
+    """Return the length in mm of the untrimmed contact feature of a side."""
+    return (
+        side.length
+        if isinstance(side, LineSide)
+        else 2 * side.half_sweep * side.compute_offset_radius(radius)
+    )
 
 
-def way_point(side: Side, radius: arb, place: arb) -> Point:
-    """The peg's centre at a place."""
+def compute_way_point(side: Side, radius: arb, place: arb) -> Point:
+    """Return the peg's centre at a place."""
     if isinstance(side, LineSide):
         (x, y), (nx, ny) = side.start, side.normal
         return x + place * side.tangent[0] + radius * nx, y + place * side.tangent[1] + radius * ny
-    reach = side.reach(radius)
+    reach = side.compute_offset_radius(radius)
     angle = side.sign * (place / reach - side.half_sweep)
-    ray = turned(side.middle, angle.cos(), angle.sin())
+    ray = turn_vector(side.middle, angle.cos(), angle.sin())
     return side.center[0] + reach * ray[0], side.center[1] + reach * ray[1]
 
 
-def entered(side: Side, radius: arb, other: Side, near: arb) -> list[Barrier]:
-    """Ranges of places on the way along a side that are nearer than ``near`` mm to another side, in order."""
-    extent = length_of(side, radius)
+def find_entered_ranges(side: Side, radius: arb, other: Side, near: arb) -> list[Barrier]:
+    """Return the ranges of places on the way along a side that are nearer than ``near`` mm to another side,
+    in order.
+    """
+    extent = measure_feature(side, radius)
     crossings = []
-    for point in crossing_points(side, radius, other, near):
-        if isinstance(side, ArcSide) and side.within(side.from_center(point)) < 0:
+    for point in find_crossing_points(side, radius, other, near):
+        if isinstance(side, ArcSide) and side.measure_within(side.from_center(point)) < 0:
             continue
-        place = side.slacks(point, radius)[0]
+        place = side.compute_slacks(point, radius)[0]
         if not (place < 0 or place > extent):
             crossings.append(place)
     crossings.sort(key=lambda place: float(place.mid()))
     ranges: list[Barrier] = []
     for low, high in pairwise([arb(0), *crossings, extent]):
-        if other.distance(way_point(side, radius, ((low + high) / 2).mid())) < near:
+        if other.compute_distance(compute_way_point(side, radius, ((low + high) / 2).mid())) < near:
             joins = bool(ranges) and ranges[-1][1] is low
             ranges = [*ranges[:-1], (ranges[-1][0], high)] if joins else [*ranges, (low, high)]
     return ranges
 
 
-def crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Iterator[Point]:
-    """Where a peg's way meets the lines and circles at ``near`` mm from another side."""
+def find_crossing_points(side: Side, radius: arb, other: Side, near: arb) -> Iterator[Point]:
+    """Yield where a peg's way meets the lines and circles at ``near`` mm from another side."""
     circles = [(other.start, near), (other.end, near)]
     if isinstance(other, ArcSide):
         circles += [(other.center, other.radius + near), (other.center, other.radius - near)]
     else:
         for level in (other.level + near, other.level - near):
-            yield from on_line(side, radius, other.normal, level)
+            yield from find_points_on_line(side, radius, other.normal, level)
     for center, size in circles:
         if size > 0:
-            yield from on_circle(side, radius, center, size)
+            yield from find_points_on_circle(side, radius, center, size)
 
 
-def on_line(side: Side, radius: arb, normal: Point, level: arb) -> Iterator[Point]:
-    """Points of the way with normal . x = level; none where that may be parallel to a straight way."""
+def find_points_on_line(side: Side, radius: arb, normal: Point, level: arb) -> Iterator[Point]:
+    """Yield the points of the way with normal . x = level; none where that may be parallel to a straight way."""
     if isinstance(side, ArcSide):
-        yield from on_ring(side, radius, normal, (level - dot(normal, side.center)) / side.reach(radius))
+        yield from find_points_on_ring(
+            side,
+            radius,
+            normal,
+            (level - compute_dot_product(normal, side.center)) / side.compute_offset_radius(radius),
+        )
         return
-    slope, origin = dot(normal, side.tangent), way_point(side, radius, arb(0))
+    slope, origin = compute_dot_product(normal, side.tangent), compute_way_point(side, radius, arb(0))
     if slope > 0 or slope < 0:
-        yield way_point(side, radius, (level - dot(normal, origin)) / slope)
+        yield compute_way_point(side, radius, (level - compute_dot_product(normal, origin)) / slope)
 
 
-def on_circle(side: Side, radius: arb, center: Point, size: arb) -> Iterator[Point]:
-    """Points of the way on a circle; none when it may be concentric to a round way."""
+def find_points_on_circle(side: Side, radius: arb, center: Point, size: arb) -> Iterator[Point]:
+    """Yield the points of the way on a circle; none when it may be concentric to a round way."""
     if isinstance(side, ArcSide):
-        reach = side.reach(radius)
+        reach = side.compute_offset_radius(radius)
         apart = center[0] - side.center[0], center[1] - side.center[1]
-        far = norm(apart)
+        far = compute_norm(apart)
         if far > 0:
             axis = apart[0] / far, apart[1] / far
-            yield from on_ring(
+            yield from find_points_on_ring(
                 side, radius, axis, (far * far + reach * reach - size * size) / (2 * far * reach)
             )
         return
-    origin = way_point(side, radius, arb(0))
+    origin = compute_way_point(side, radius, arb(0))
     ray = center[0] - origin[0], center[1] - origin[1]
     across = cross(side.tangent, ray)
     square = size * size - across * across
     if not square < 0:
-        along, half = dot(side.tangent, ray), root(square)
+        along, half = compute_dot_product(side.tangent, ray), compute_square_root(square)
         for place in (along - half, along + half):
-            yield way_point(side, radius, place)
+            yield compute_way_point(side, radius, place)
 
 
-def on_ring(side: ArcSide, radius: arb, axis: Point, cosine: arb) -> Iterator[Point]:
-    """Points of a round way whose direction from the centre has a cosine with an axis, a unit vector."""
+def find_points_on_ring(side: ArcSide, radius: arb, axis: Point, cosine: arb) -> Iterator[Point]:
+    """Yield the points of a round way whose direction from the centre has a cosine with an axis, a unit vector."""
     square = 1 - cosine * cosine
     if not square < 0:
-        sine, reach = root(square), side.reach(radius)
+        sine, reach = compute_square_root(square), side.compute_offset_radius(radius)
         for sign in (1, -1):
-            ray = turned(axis, cosine, sign * sine)
+            ray = turn_vector(axis, cosine, sign * sine)
             yield side.center[0] + reach * ray[0], side.center[1] + reach * ray[1]
 
 
@@ -200,27 +212,27 @@ MOST_PIECES = 1 << 14
 SHORTEST = HAIR / 1024
 
 
-def touching_findings(
+def judge_touching(
     name: str, contact: BallContact, face: int, pose: BallPose, outline: BallOutline, margin: float
 ) -> Iterator[Finding]:
-    """Whether a peg touches a face, ``margin`` mm inside the ends of its feature, and nothing else."""
-    center = contact.in_part(pose)
+    """Check whether a peg touches a face, ``margin`` mm inside the ends of its feature, and nothing else."""
+    center = contact.compute_center_in_part(pose)
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"
     edge = f"{name} is exactly {margin:g} mm from the end of its feature on face {face}"
-    joined = outline.smooth_ends(face, contact.body is not None)
+    joined = outline.find_smooth_ends(face, contact.body is not None)
     # A margin below two hairs asks for no less than none does.
     reach = max(margin - HAIR, HAIR)
-    for slack, smooth in zip(contact.side.slacks(center, contact.radius), joined, strict=False):
+    for slack, smooth in zip(contact.side.compute_slacks(center, contact.radius), joined, strict=False):
         inside = slack - margin + HAIR if smooth else slack - reach
         if inside > 0:
             continue
         past = f"{name} lies {number(-slack)} mm past the end of face {face}"
         at = f"{name} touches face {face} exactly at its end"
         broken = past if slack < -HAIR else at if slack < HAIR else close
-        yield from rule(inside, broken, edge if margin else at)
+        yield from judge_slack(inside, broken, edge if margin else at)
     near = []
     for index, side in outline.others[face]:
-        clearance = side.distance(center) - contact.clear_radius
+        clearance = side.compute_distance(center) - contact.clear_radius
         if clearance > reach:
             continue
         near.append(side)
@@ -237,24 +249,27 @@ def touching_findings(
             yield Finding(clear is False, close if clear is False else edge)
 
 
-def along_feature(contact: BallContact, center: Point, step: arb) -> Point:
-    """The point a length in mm along the contact feature from a peg's centre."""
+def move_along_feature(contact: BallContact, center: Point, step: arb) -> Point:
+    """Return the point a length in mm along the contact feature from a peg's centre."""
     side = contact.side
     if isinstance(side, LineSide):
         return center[0] + step * side.tangent[0], center[1] + step * side.tangent[1]
-    angle = step / side.reach(contact.radius)
-    x, y = turned(side.from_center(center), angle.cos(), angle.sin())
+    angle = step / side.compute_offset_radius(contact.radius)
+    x, y = turn_vector(side.from_center(center), angle.cos(), angle.sin())
     return side.center[0] + x, side.center[1] + y
 
 
 def runs_alongside(contact: BallContact, center: Point, side: Side) -> bool:
-    """Whether a side runs alongside a peg's face where the peg is."""
-    one, two = (side.distance(along_feature(contact, center, arb(step))) for step in (-HAIR, HAIR))
+    """Return whether a side runs alongside a peg's face where the peg is."""
+    one, two = (
+        side.compute_distance(move_along_feature(contact, center, arb(step))) for step in (-HAIR, HAIR)
+    )
     return bool(abs(one - two) < 2 * HAIR * TANGENT)
 
 
 def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], reach: float) -> bool | None:
-    """Whether a peg stays clear of some sides within a reach in mm along its feature; None if undecided.
+    """Return whether a peg stays clear of some sides within a reach in mm along its feature; None if
+    undecided.
 
     Pieces of the feature that are not seen to be clear are halved.
     """
@@ -264,12 +279,12 @@ def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], rea
     while pieces and looked_at < MOST_PIECES:
         middle, half = pieces.pop()
         looked_at += 1
-        point = along_feature(contact, center, middle)
-        around = along_feature(contact, center, middle + arb(0, half))
+        point = move_along_feature(contact, center, middle)
+        around = move_along_feature(contact, center, middle + arb(0, half))
         doubtful = False
         for side in sides:
-            clearance = side.distance(point) - contact.clear_radius
-            loss = half * steepness(contact, side, around)
+            clearance = side.compute_distance(point) - contact.clear_radius
+            loss = half * bound_steepness(contact, side, around)
             if clearance > loss:
                 continue
             close = clearance < 0 or clearance + HAIR > loss
@@ -284,12 +299,12 @@ def clear_within(contact: BallContact, center: Point, sides: Sequence[Side], rea
     return True if decided and not pieces else None
 
 
-def steepness(contact: BallContact, side: Side, around: Point) -> arb:
-    """A bound of 1 or less on the change of a side's clearance per mm that the peg slides in a box.
+def bound_steepness(contact: BallContact, side: Side, around: Point) -> arb:
+    """Return a bound of 1 or less on the change of a side's clearance per mm that the peg slides in a box.
 
     It is the cosine between the peg's way and the way from the side's nearest point to the peg's centre.
     """
-    away = side.away(around)
+    away = side.find_vector_away(around)
     if away is None:
         return arb(1)
     if isinstance(contact.side, LineSide):
@@ -297,5 +312,5 @@ def steepness(contact: BallContact, side: Side, around: Point) -> arb:
     else:
         ray = contact.side.from_center(around)
         along = -ray[1], ray[0]
-    size = norm(away) * norm(along)
-    return (abs(dot(along, away)) / size).min(arb(1)) if size > 0 else arb(1)
+    size = compute_norm(away) * compute_norm(along)
+    return (abs(compute_dot_product(along, away)) / size).min(arb(1)) if size > 0 else arb(1)

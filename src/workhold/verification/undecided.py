@@ -30,18 +30,18 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
+    compute_dot_product,
+    compute_norm,
     cross,
-    dot,
-    norm,
-    turned,
+    turn_vector,
 )
-from workhold.verification.contacts import every_outline, standoff
-from workhold.verification.rules.travel import quarter_turns, seen_along_x
+from workhold.verification.contacts import compute_standoff, make_joint_outline
+from workhold.verification.rules.travel import count_quarter_turns, turn_hole_back
 from workhold.verification.seat import LOCATORS
 from workhold.verification.tolerances import AGREEMENT
-from workhold.verification.touching import on_circle, on_line
+from workhold.verification.touching import find_points_on_circle, find_points_on_line
 
-__all__ = ["undecided_faults"]
+__all__ = ["find_undecided_faults"]
 
 # mm. Features end so much farther out while contacts are sought; contacts are off by their errors.
 LOOSE = 10 * AGREEMENT
@@ -73,29 +73,31 @@ class TouchingPeg:
     loose: float
 
 
-def undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str]:
-    """A fault for every undecided entry that is no real place."""
+def find_undecided_faults(entries: Sequence[Undecided], query: Query) -> Iterator[str]:
+    """Yield a fault for every undecided entry that is no real place."""
     if not entries:
         return
     with ctx.workprec(PRECISIONS[0]):
-        outline = every_outline(query.workpiece)
+        outline = make_joint_outline(query.workpiece)
         for number, entry in enumerate(entries, 1):
-            parts = single_entries(entry, query) if query.toolkit.travels > 1 else ((entry, query),)
-            fault = next(filter(None, (entry_fault(*part, outline) for part in parts)), "")
+            parts = (
+                split_into_single_entries(entry, query) if query.toolkit.travels > 1 else ((entry, query),)
+            )
+            fault = next(filter(None, (find_entry_fault(*part, outline) for part in parts)), "")
             if fault:
                 yield f"undecided candidate {number} of the proof {fault}"
 
 
-def entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """What is wrong with an entry of four contacts or two chords; empty when nothing is."""
-    fault = written_fault(entry, query, outline)
+def find_entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
+    """Return what is wrong with an entry of four contacts or two chords; empty when nothing is."""
+    fault = find_written_fault(entry, query, outline)
     if WALL_END not in query.toolkit.contacts:
-        fault = fault or holes_fault(entry, query) or place_fault(entry, query, outline)
+        fault = fault or find_holes_fault(entry, query) or place_fault(entry, query, outline)
     return fault
 
 
-def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
-    """The entries of one clamp that an entry of two clamps consists of, each with a query of that clamp."""
+def split_into_single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, Query]]:
+    """Yield the entries of one clamp that an entry of two clamps consists of, each with a query of that clamp."""
     _, *directions = entry.type.split()
     alone = {one.direction: (one.name, way) for way in query.toolkit.ways for one in way.arrangements}
     asked = (
@@ -122,40 +124,40 @@ def single_entries(entry: Undecided, query: Query) -> Iterator[tuple[Undecided, 
 
 
 def is_of_chords(entry: Undecided) -> bool:
-    """Whether an entry is a pair of chords, each from the first peg to the second."""
+    """Return whether an entry is a pair of chords, each from the first peg to the second."""
     return entry.reason == GIVEN_UP
 
 
-def arrangement_of(entry: Undecided, query: Query) -> Arrangement:
-    """The arrangement that an entry names, with the direction where there are several."""
+def find_arrangement(entry: Undecided, query: Query) -> Arrangement:
+    """Return the arrangement that an entry names, with the direction where there are several."""
     return next(one for one in query.toolkit.arrangements if one.title == entry.type)
 
 
-def along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[Carrier]]:
-    """An entry turned so that its clamp moves in -x, with the carriers of its four pegs."""
-    arrangement, carriers = arrangement_of(entry, query), query.toolkit.carriers
+def turn_entry_along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[Carrier]]:
+    """Return an entry turned so that its clamp moves in -x, with the carriers of its four pegs."""
+    arrangement, carriers = find_arrangement(entry, query), query.toolkit.carriers
     if is_of_chords(entry) and arrangement.pegs != (2, 2):
         pegs = [carriers[0]] * 4
     else:
         pegs = [carriers[number] for number in arrangement.carriers]
-    turns = 0 if arrangement.direction is None else quarter_turns(arrangement.direction)
+    turns = 0 if arrangement.direction is None else count_quarter_turns(arrangement.direction)
     if turns == 0:
         return entry, pegs
-    holes = [seen_along_x(turns, *hole) for hole in zip(entry.columns, entry.rows, strict=True)]
+    holes = [turn_hole_back(turns, *hole) for hole in zip(entry.columns, entry.rows, strict=True)]
     columns, rows = ((a, b, c, d) for a, b, c, d in zip(*holes, strict=True))
     if turns % 2:
         pegs = [evolve(one, pitch=one.pitch[::-1], columns=one.rows, rows=one.columns) for one in pegs]
     return evolve(entry, columns=columns, rows=rows, theta_deg=entry.theta_deg - 90.0 * turns), pegs
 
 
-def groups_of(entry: Undecided, query: Query) -> list[list[int]]:
-    """The numbers of pegs whose steps from the first of them are given."""
-    first = 2 if is_of_chords(entry) else arrangement_of(entry, query).pegs[0]
+def group_pegs(entry: Undecided, query: Query) -> list[list[int]]:
+    """Return the numbers of pegs whose steps from the first of them are given."""
+    first = 2 if is_of_chords(entry) else find_arrangement(entry, query).pegs[0]
     return [list(range(first)), list(range(first, 4))]
 
 
-def written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """What is wrong with the whole numbers and the words of an entry; empty when nothing is."""
+def find_written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
+    """Return what is wrong with the whole numbers and the words of an entry; empty when nothing is."""
     if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.types]:
         return f"is of type {entry.type}, which is not asked for"
     if entry.reason not in REASONS:
@@ -167,10 +169,10 @@ def written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     return ""
 
 
-def holes_fault(entry: Undecided, query: Query) -> str:
-    """What is wrong with the holes of an entry; empty when nothing is."""
-    entry, carriers = along_x(entry, query)
-    for group in groups_of(entry, query):
+def find_holes_fault(entry: Undecided, query: Query) -> str:
+    """Return what is wrong with the holes of an entry; empty when nothing is."""
+    entry, carriers = turn_entry_along_x(entry, query)
+    for group in group_pegs(entry, query):
         carrier, first = carriers[group[0]], group[0]
         if entry.columns[first] or (entry.rows[first] and (first == 0 or is_of_chords(entry))):
             return "does not count its holes from the first peg"
@@ -188,14 +190,14 @@ def holes_fault(entry: Undecided, query: Query) -> str:
 
 
 def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """What is wrong with the place of an entry; empty when nothing is, and where that is not certain."""
+    """Return what is wrong with the place of an entry; empty when nothing is, and where that is not certain."""
     if entry.reach_deg is None and not is_of_chords(entry):
         return ""
-    entry, carriers = along_x(entry, query)
+    entry, carriers = turn_entry_along_x(entry, query)
     theta = arb(entry.theta_deg, (entry.reach_deg or 0.0) + WRITTEN)
     sine, cosine = (theta / 180).sin_cos_pi()
-    loose = LOOSE + radians(entry.reach_deg or 0.0) * outline_size(query)
-    groups = groups_of(entry, query)
+    loose = LOOSE + radians(entry.reach_deg or 0.0) * bound_outline_size(query)
+    groups = group_pegs(entry, query)
     pegs = []
     for group in groups:
         pitch_x, pitch_y = carriers[group[0]].pitch
@@ -204,11 +206,13 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
             for k in group
         ]
         sides = [outline.faces[entry.faces[k]] for k in group]
-        turns = [turned(step, cosine, -sine) for step in steps]
-        radii = [standoff(side, carriers[group[0]].peg_radius, carriers[group[0]].flat) for side in sides]
+        turns = [turn_vector(step, cosine, -sine) for step in steps]
+        radii = [
+            compute_standoff(side, carriers[group[0]].peg_radius, carriers[group[0]].flat) for side in sides
+        ]
         columns = [entry.columns[k] for k in group]
         pegs.append([TouchingPeg(*one, loose) for one in zip(sides, radii, turns, columns, strict=True)])
-    held = [first_pegs(group) if len(group) > 1 else None for group in pegs]
+    held = [find_first_peg_places(group) if len(group) > 1 else None for group in pegs]
     if any(places is not None and not places for places in held):
         return "is no place where its pegs touch their faces"
     standing, moving = held
@@ -220,12 +224,12 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     gap = query.toolkit.gap
     ahead = None if gap is None else reach * first.pitch[0] + gap
     if len(pegs[1]) == 1:
-        rows = [on_row(pegs[1][0], tail, up, (cosine, sine)) for tail in standing]
+        rows = [find_places_on_row(pegs[1][0], tail, up, (cosine, sine)) for tail in standing]
         moving = None if None in rows else [place for row in rows for place in row or ()]
     if moving is None:
         return ""
     for tail, place in product(standing, moving):
-        apart = turned((place[0] - tail[0], place[1] - tail[1]), cosine, sine)
+        apart = turn_vector((place[0] - tail[0], place[1] - tail[1]), cosine, sine)
         if not (abs(apart[1] - up) > loose or (ahead is not None and apart[0] < ahead - loose)):
             return ""
     if gap is None:
@@ -233,71 +237,80 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     return "is no place where the pegs of both jaws stand in their rows, the smallest gap apart"
 
 
-def outline_size(query: Query) -> float:
-    """An upper bound in mm of the distance of two points of the workpiece, or of pegs that touch it."""
+def bound_outline_size(query: Query) -> float:
+    """Return an upper bound in mm of the distance of two points of the workpiece, or of pegs that touch it."""
     x0, y0, x1, y1 = query.workpiece.bounds
     return hypot(x1 - x0, y1 - y0) + 2.0 * max(carrier.peg_radius for carrier in query.toolkit.carriers)
 
 
-def first_pegs(group: Sequence[TouchingPeg]) -> list[Point] | None:
-    """Where the first peg of a jaw may be when all its pegs touch; None for anywhere along a way."""
+def find_first_peg_places(group: Sequence[TouchingPeg]) -> list[Point] | None:
+    """Return where the first peg of a jaw may be when all its pegs touch; None for anywhere along a way."""
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
     if other is None:
         return None if all(may_slide_with(one, peg) for peg in group[1:]) else []
     side, (x, y), spare = other.side, other.step, arb(0, other.loose)
     if isinstance(side, LineSide):
-        points = on_line(
-            one.side, one.radius, side.normal, side.level + other.radius + spare - dot(side.normal, (x, y))
+        points = find_points_on_line(
+            one.side,
+            one.radius,
+            side.normal,
+            side.level + other.radius + spare - compute_dot_product(side.normal, (x, y)),
         )
     else:
         center = side.center[0] - x, side.center[1] - y
-        points = on_circle(one.side, one.radius, center, side.reach(other.radius) + spare)
+        points = find_points_on_circle(
+            one.side, one.radius, center, side.compute_offset_radius(other.radius) + spare
+        )
     return [point for point in points if all(may_touch(peg, point) for peg in group)]
 
 
 def are_across(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Whether two pegs of one jaw certainly have ways that are not nearly parallel or concentric."""
+    """Return whether two pegs of one jaw certainly have ways that are not nearly parallel or concentric."""
     a, b = one.side, other.side
     if isinstance(a, LineSide) and isinstance(b, LineSide):
         return bool(abs(cross(a.tangent, b.tangent)) > PARALLEL)
     if isinstance(a, ArcSide) and isinstance(b, ArcSide):
         x, y = b.center[0] - other.step[0] - a.center[0], b.center[1] - other.step[1] - a.center[1]
-        return bool(norm((x, y)) > one.loose)
+        return bool(compute_norm((x, y)) > one.loose)
     return True
 
 
 def may_slide_with(one: TouchingPeg, other: TouchingPeg) -> bool:
-    """Whether two pegs whose ways run parallel may touch both at once."""
+    """Return whether two pegs whose ways run parallel may touch both at once."""
     a, b = one.side, other.side
     if isinstance(a, ArcSide):
         return (
-            not abs(a.reach(one.radius) - b.reach(other.radius)) > one.loose
+            not abs(a.compute_offset_radius(one.radius) - b.compute_offset_radius(other.radius)) > one.loose
             if isinstance(b, ArcSide)
             else True
         )
     off = one.radius
     point = a.start[0] + off * a.normal[0] + other.step[0], a.start[1] + off * a.normal[1] + other.step[1]
-    return not abs(b.gap(point) - other.radius) > one.loose + PARALLEL * (a.length + norm(other.step))
+    return not abs(b.compute_gap(point) - other.radius) > one.loose + PARALLEL * (
+        a.length + compute_norm(other.step)
+    )
 
 
 def may_touch(peg: TouchingPeg, first: Point) -> bool:
-    """Whether a peg may touch its side inside its ends, with the first peg of its jaw at a place."""
+    """Return whether a peg may touch its side inside its ends, with the first peg of its jaw at a place."""
     side, point = peg.side, (first[0] + peg.step[0], first[1] + peg.step[1])
-    if isinstance(side, ArcSide) and not side.reach(peg.radius) > 0:
+    if isinstance(side, ArcSide) and not side.compute_offset_radius(peg.radius) > 0:
         return False
-    if abs(side.gap(point) - peg.radius) > peg.loose:
+    if abs(side.compute_gap(point) - peg.radius) > peg.loose:
         return False
-    return not any(slack < -peg.loose for slack in side.slacks(point, peg.radius))
+    return not any(slack < -peg.loose for slack in side.compute_slacks(point, peg.radius))
 
 
-def on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) -> list[Point] | None:
-    """Where a peg may be that stands ``up`` mm above another; None where its side runs along the row."""
-    side, across = moved.side, turned((arb(0), arb(1)), turn[0], -turn[1])
+def find_places_on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) -> list[Point] | None:
+    """Return where a peg may be that stands ``up`` mm above another; None where its side runs along the row."""
+    side, across = moved.side, turn_vector((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):
-        slope = dot(across, side.tangent)
+        slope = compute_dot_product(across, side.tangent)
         if not (slope > 0 or slope < 0):
             return None
     peg = evolve(moved, step=(arb(0), arb(0)))
-    points = on_line(side, moved.radius, across, dot(across, tail) + up + arb(0, moved.loose))
+    points = find_points_on_line(
+        side, moved.radius, across, compute_dot_product(across, tail) + up + arb(0, moved.loose)
+    )
     return [point for point in points if may_touch(peg, point)]

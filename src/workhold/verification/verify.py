@@ -18,25 +18,30 @@ from workhold.model.quality import PIN_KEYS
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
-from workhold.verification.account import account_faults, seat_faults
-from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, norm
-from workhold.verification.contacts import Balance, BallContact, BallPose, closure_findings, met_by
-from workhold.verification.figures import Measure, figure_missing, written_numbers
+from workhold.verification.account import find_account_faults, seat_faults
+from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, compute_norm
+from workhold.verification.contacts import Balance, BallContact, BallPose, judge_closure, select_outline_for
+from workhold.verification.figures import Measure, find_missing_figure, judge_written_numbers
 from workhold.verification.flat_jaws import JawJudge
-from workhold.verification.force_walk import program_force_findings
+from workhold.verification.force_walk import judge_program_forces
 from workhold.verification.judging import order_faults
-from workhold.verification.listing import Listing, listing_of, read_listing
-from workhold.verification.pins import beams_of
-from workhold.verification.placing import broken_restriction, gap_findings, proven_pose, written_pose
-from workhold.verification.repeats import KnownFixtures, PartRotations, pattern_faults
+from workhold.verification.listing import Listing, collect_claims, read_listing
+from workhold.verification.pins import make_beams
+from workhold.verification.placing import (
+    enclose_written_pose,
+    find_broken_restriction,
+    judge_gaps,
+    prove_pose,
+)
+from workhold.verification.repeats import KnownFixtures, PartRotations, find_pattern_faults
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.seat import SeatBalance
 from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
-from workhold.verification.stock_walk import stock_faults
-from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
-from workhold.verification.tool_walk import program_fault
-from workhold.verification.touching import touching_findings
+from workhold.verification.stock_walk import find_stock_faults
+from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
+from workhold.verification.tool_walk import find_program_fault
+from workhold.verification.touching import judge_touching
 
 __all__ = [
     "Judge",
@@ -44,8 +49,8 @@ __all__ = [
     "Unproven",
     "Verdict",
     "Verification",
-    "no_progress",
-    "not_shown",
+    "ignore_progress",
+    "list_not_shown",
     "verify",
     "verify_file",
     "verify_fixture",
@@ -74,7 +79,7 @@ class Ruling:
 def verify_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, contact_margin: float = 0.0
 ) -> Ruling:
-    """Proves or refutes one fixture from workpiece, toolkit, pegs and faces alone.
+    """Prove or refutes one fixture from workpiece, toolkit, pegs and faces alone.
 
     Parameters
     ----------
@@ -99,7 +104,7 @@ class Judge:
 
     @cached_property
     def hardware(self) -> ToolkitRules:
-        return ToolkitRules.of(self.query)
+        return ToolkitRules.from_query(self.query)
 
     @cached_property
     def diameter(self) -> float:
@@ -112,55 +117,58 @@ class Judge:
         return self.diameter / 2 + self.hardware.largest_radius
 
     def rule_on(self, fixture: Fixture) -> Ruling:
-        """The ruling on one fixture, at the lowest precision that decides it."""
+        """Return the ruling on one fixture, at the lowest precision that decides it."""
         ruling = Ruling("undecided", "", 0)
         for bits in PRECISIONS:
             with ctx.workprec(bits):
-                ruling = self.ruling_at(bits, fixture)
+                ruling = self.rule_at_precision(bits, fixture)
             if ruling.verdict != "undecided":
                 break
         return ruling
 
-    def ruling_at(self, bits: int, fixture: Fixture) -> Ruling:
+    def rule_at_precision(self, bits: int, fixture: Fixture) -> Ruling:
         if bits not in self.measures:
-            self.measures[bits] = Measure.of(self.wrench_length, self.diameter, self.query)
+            self.measures[bits] = Measure.from_query(self.wrench_length, self.diameter, self.query)
         doubt = ""
-        for finding in self.findings(fixture, self.measures[bits]):
+        for finding in self.judge_fixture(fixture, self.measures[bits]):
             if finding.definite:
                 return Ruling("refuted", finding.reason, bits)
             doubt = doubt or finding.reason
         return Ruling("undecided", doubt, bits) if doubt else Ruling("proven", "", bits)
 
-    def findings(self, fixture: Fixture, measure: Measure) -> Iterator[Finding]:
-        """Everything that speaks against a fixture, cheap rules first, which a definite finding ends."""
+    def judge_fixture(self, fixture: Fixture, measure: Measure) -> Iterator[Finding]:
+        """Yield everything that speaks against a fixture, cheap rules first, which a definite finding ends."""
         outline, hardware = measure.outline, self.hardware
-        yield from hardware.hole_findings(fixture)
+        yield from hardware.judge_holes(fixture)
         for name, peg in zip(hardware.names, fixture.pegs, strict=True):
-            if peg.face not in met_by(outline, peg.carrier).faces:
+            if peg.face not in select_outline_for(outline, peg.carrier).faces:
                 yield Finding(True, f"{name} is on segment {peg.face}, which does not name a face")
-        contacts = hardware.contacts(fixture, outline)
+        contacts = hardware.make_contacts(fixture, outline)
         touching = [
-            (name, contact, peg.face, met_by(outline, peg.carrier))
+            (name, contact, peg.face, select_outline_for(outline, peg.carrier))
             for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
             if not contact.is_flush
         ]
         for name, contact, face, _ in touching:
-            if isinstance(contact.side, ArcSide) and not contact.side.reach(contact.radius) > 0:
+            if (
+                isinstance(contact.side, ArcSide)
+                and not contact.side.compute_offset_radius(contact.radius) > 0
+            ):
                 yield Finding(True, f"{name} does not fit into the concave face {face}")
-        yield from flat_findings(fixture, hardware.names, contacts)
-        travels = hardware.travels(fixture)
-        pose = written_pose(fixture.pose, list(travels.values()))
-        yield from gap_findings([one[:3] for one in touching], pose)
-        proven, doubts = proven_pose(contacts, fixture.pose, travels)
+        yield from judge_flats(fixture, hardware.names, contacts)
+        travels = hardware.compute_travels(fixture)
+        pose = enclose_written_pose(fixture.pose, list(travels.values()))
+        yield from judge_gaps([one[:3] for one in touching], pose)
+        proven, doubts = prove_pose(contacts, fixture.pose, travels)
         yield from doubts
         # Without a proof, what holds at no pose that agrees with the file's still refutes.
         pose = proven or pose
-        yield from hardware.standing_findings(fixture, contacts, pose, outline)
+        yield from hardware.judge_standing(fixture, contacts, pose, outline)
         for name, contact, face, met in touching:
-            yield from touching_findings(name, contact, face, pose, met, self.query.contact_margin)
-        yield from self.force_findings(fixture, contacts, pose, measure, proven is not None)
+            yield from judge_touching(name, contact, face, pose, met, self.query.contact_margin)
+        yield from self.judge_forces(fixture, contacts, pose, measure, proven is not None)
 
-    def force_findings(
+    def judge_forces(
         self,
         fixture: Fixture,
         contacts: Sequence[BallContact],
@@ -168,34 +176,36 @@ class Judge:
         measure: Measure,
         is_proven: bool,
     ) -> Iterator[Finding]:
-        """Whether the contacts of a fixture close at a pose, with the forces and figures that are written."""
+        """Check whether the contacts of a fixture close at a pose, with the forces and figures that are written."""
         hardware, pair = self.hardware, fixture.pair
         if pair is None:
-            balance = Balance.of(contacts, pose, self.query.toolkit.clamping)
-            loose = list(closure_findings(balance, self.wrench_length, hardware.names, hardware.slack_words))
+            balance = Balance.from_contacts(contacts, pose, self.query.toolkit.clamping)
+            loose = list(judge_closure(balance, self.wrench_length, hardware.names, hardware.slack_words))
             yield from loose
             if loose and is_proven:
                 return
             outline = measure.outline
-            yield from hardware.reach_findings(fixture, contacts, pose, outline, balance.shares)
-            pressed = hardware.pressed(fixture, contacts, pose, outline)
+            yield from hardware.judge_reach(fixture, contacts, pose, outline, balance.shares)
+            pressed = hardware.find_pressed_contacts(fixture, contacts, pose, outline)
             if hardware.jaw is not None:
-                balance = Balance.of(pressed, pose, self.query.toolkit.clamping)
-            yield from self.figure_findings(fixture, pressed, pose, measure, balance)
+                balance = Balance.from_contacts(pressed, pose, self.query.toolkit.clamping)
+            yield from self.judge_figures(fixture, pressed, pose, measure, balance)
             return
-        seat = SeatBalance.of(contacts, pose)
-        yield from seat.push_findings(self.wrench_length)
-        loose = list(seat.closure_findings())
+        seat = SeatBalance.from_contacts(contacts, pose)
+        yield from seat.judge_pushes(self.wrench_length)
+        loose = list(seat.judge_closure())
         yield from loose
         if loose:
             return
         yield from seat.number_findings(pair, hardware.names)
-        yield from self.figure_findings(fixture, contacts, pose, measure, seat)
+        yield from self.judge_figures(fixture, contacts, pose, measure, seat)
         if is_proven:
-            standing = SeatOnPlate.of(fixture, contacts, pose, self.query, hardware, measure.outline)
-            yield from standing.pair_findings(fixture, pair, contacts, pose, seat)
+            standing = SeatOnPlate.from_fixture(
+                fixture, contacts, pose, self.query, hardware, measure.outline
+            )
+            yield from standing.judge_pair(fixture, pair, contacts, pose, seat)
 
-    def figure_findings(
+    def judge_figures(
         self,
         fixture: Fixture,
         contacts: Sequence[BallContact],
@@ -203,19 +213,17 @@ class Judge:
         measure: Measure,
         balance: Balance | SeatBalance,
     ) -> Iterator[Finding]:
-        """Whether forces and figures of quality in the file are those derived from a balance."""
-        names, faces = self.hardware.names, self.hardware.shared_faces(fixture, contacts)
+        """Check whether forces and figures of quality in the file are those derived from a balance."""
+        names, faces = self.hardware.names, self.hardware.number_shared_faces(fixture, contacts)
         stated = any(key in fixture.quality for key in PIN_KEYS)
-        beams = beams_of(fixture, self.query)
-        figures = measure.figures(contacts, faces, pose, balance, beams, stated)
-        yield from written_numbers(fixture, names, balance, figures)
-        yield from program_force_findings(fixture, self.query, self.hardware, balance)
+        beams = make_beams(fixture, self.query)
+        figures = measure.compute_figures(contacts, faces, pose, balance, beams, stated)
+        yield from judge_written_numbers(fixture, names, balance, figures)
+        yield from judge_program_forces(fixture, self.query, self.hardware, balance)
 
 
-def flat_findings(
-    fixture: Fixture, names: Sequence[str], contacts: Sequence[BallContact]
-) -> Iterator[Finding]:
-    """Whether flats look at the faces that they lie on, where the file says which way, and no others do."""
+def judge_flats(fixture: Fixture, names: Sequence[str], contacts: Sequence[BallContact]) -> Iterator[Finding]:
+    """Check whether flats look at the faces that they lie on, where the file says which way, and no others do."""
     for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
         lies = contact.body is not None and isinstance(contact.side, LineSide)
         if peg.flat_deg is None or not lies:
@@ -225,9 +233,9 @@ def flat_findings(
                 )
         elif not isnan(peg.flat_deg) and isinstance(contact.side, LineSide):
             sine, cosine = ((arb(peg.flat_deg) - arb(fixture.pose.theta_deg)) / 180).sin_cos_pi()
-            off = norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
+            off = compute_norm((cosine + contact.side.normal[0], sine + contact.side.normal[1]))
             past = number(off * 180 / arb.pi())
-            yield from rule(AGREEMENT - off, f"the flat of {name} looks {past} degrees past its face")
+            yield from judge_slack(AGREEMENT - off, f"the flat of {name} looks {past} degrees past its face")
 
 
 # What a result in any toolkit alone cannot show, beside what ``not_shown`` says.
@@ -289,8 +297,8 @@ class Verification:
         return not self.refuted and not self.faults
 
 
-def not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
-    """What a result in a toolkit, perhaps with seating, alone cannot show; answering its query again does."""
+def list_not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
+    """Yield what a result in a toolkit, perhaps with seating, alone cannot show; answering its query again does."""
     left_out = "seats" if toolkit.travels > 1 else "fixtures"
     yield f"whether {left_out} were left out, with all counts adjusted"
     yield (
@@ -304,12 +312,12 @@ def not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
     yield from NOT_SHOWN
 
 
-def no_progress(fraction: float, unproven: int) -> None:
+def ignore_progress(fraction: float, unproven: int) -> None:
     """Report nothing."""
 
 
-def verify(result: Result, progress: Progress = no_progress) -> Verification:
-    """Derives every fixture of a result again in balls, from workpiece, toolkit, pegs and faces alone.
+def verify(result: Result, progress: Progress = ignore_progress) -> Verification:
+    """Derive every fixture of a result again in balls, from workpiece, toolkit, pegs and faces alone.
 
     Examples
     --------
@@ -320,11 +328,11 @@ def verify(result: Result, progress: Progress = no_progress) -> Verification:
     >>> outcome.proven == outcome.fixtures, outcome.holds
     (True, True)
     """
-    return verify_listing(listing_of(result), progress)
+    return verify_listing(collect_claims(result), progress)
 
 
-def verify_file(path: str | Path, progress: Progress = no_progress) -> Verification:
-    """Derives every fixture of a result file again, and compares every number written; see :func:`verify`.
+def verify_file(path: str | Path, progress: Progress = ignore_progress) -> Verification:
+    """Derive every fixture of a result file again, and compare every number written; see :func:`verify`.
 
     Raises
     ------
@@ -335,10 +343,10 @@ def verify_file(path: str | Path, progress: Progress = no_progress) -> Verificat
 
 
 def verify_holds(listing: Listing, progress: Progress) -> Verification:
-    """What is shown of a result of flat jaws."""
+    """Return what is shown of a result of flat jaws."""
     judge, unproven = JawJudge(listing.query), list[Unproven]()
     for place, fixture in enumerate(listing.fixtures):
-        fault = next(judge.faults(fixture, place), None)
+        fault = next(judge.find_faults(fixture, place), None)
         if fault is not None:
             unproven.append(Unproven(place, "refuted", fault))
         progress((place + 1) / len(listing.fixtures), len(unproven))
@@ -354,13 +362,13 @@ def verify_holds(listing: Listing, progress: Progress) -> Verification:
     return Verification(proven, len(unproven), 0, tuple(unproven), tuple(faults), 53)
 
 
-def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verification:
+def verify_listing(listing: Listing, progress: Progress = ignore_progress) -> Verification:
     query, everything = listing.query, listing.fixtures
     if query.toolkit.flat_jaws is not None:
         return verify_holds(listing, progress)
     judge, seating = Judge(query), SeatingJudge(query)
-    turning = PartRotations.of(query.workpiece)
-    seen = KnownFixtures.of(turning, judge.hardware)
+    turning = PartRotations.from_workpiece(query.workpiece)
+    seen = KnownFixtures.make_empty(turning, judge.hardware)
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
     for place, fixture in enumerate(everything):
@@ -368,9 +376,9 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
         verdict, reason = ruling.verdict, ruling.reason
         bits = max(bits, ruling.bits)
         if verdict != "refuted":
-            broken = broken_restriction(fixture, query, judge.hardware)
-            broken = broken or figure_missing(fixture, query) or seating.fault(fixture)
-            broken = broken or program_fault(fixture, query, judge.hardware)
+            broken = find_broken_restriction(fixture, query, judge.hardware)
+            broken = broken or find_missing_figure(fixture, query) or seating.find_fault(fixture)
+            broken = broken or find_program_fault(fixture, query, judge.hardware)
             verdict, reason = ("refuted", broken) if broken else (verdict, reason)
         first = None if verdict == "refuted" else seen.add(place, fixture)
         if first is not None:
@@ -382,7 +390,7 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
     refuted = {one.index for one in unproven if one.verdict == "refuted"}
     faults = [
         *listing.faults,
-        *account_faults(listing, turning.order),
+        *find_account_faults(listing, turning.order),
         *order_faults(
             everything,
             query,
@@ -391,18 +399,18 @@ def verify_listing(listing: Listing, progress: Progress = no_progress) -> Verifi
             listing.is_whole,
             listing.is_chosen,
         ),
-        *pattern_faults(everything, query),
+        *find_pattern_faults(everything, query),
         *seat_faults(listing, refuted),
-        *stock_faults(query),
+        *find_stock_faults(query),
     ]
     if not refuted and turning.is_certain:
-        faults += distinct_faults(listing, seen)
+        faults += find_distinct_faults(listing, seen)
     tally = len(rulings) - len(unproven), len(refuted), len(unproven) - len(refuted)
     return Verification(*tally, tuple(unproven), tuple(faults), bits)
 
 
-def distinct_faults(listing: Listing, seen: KnownFixtures) -> Iterator[str]:
-    """Numbers of distinct fixtures that the fixtures listed contradict.
+def find_distinct_faults(listing: Listing, seen: KnownFixtures) -> Iterator[str]:
+    """Yield the numbers of distinct fixtures that the fixtures listed contradict.
 
     Where more are found than listed, each of the others makes a set of its own, or belongs to one.
     """

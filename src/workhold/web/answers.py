@@ -9,10 +9,10 @@ from typing import Any
 
 from attrs import asdict, evolve
 
-from workhold.drawing.bench import bench_of
-from workhold.drawing.panel import arrangement_words
+from workhold.drawing.bench import make_bench
+from workhold.drawing.panel import describe_arrangement
 from workhold.files.result.hold_text import hold_entry
-from workhold.files.result.writer import outlines_entry, proof_entry
+from workhold.files.result.writer import make_own_outlines_entry, make_proof_entry
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamps import order_words
@@ -25,19 +25,19 @@ from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import list_length_settings
 from workhold.model.shown import Shown
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.data import finite, helps_data, solid_data
-from workhold.presenting.figure_words import is_edgeless, no_edge
+from workhold.presenting.data import convert_finite, describe_helps, describe_solid
+from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
 from workhold.presenting.zoomed_picture import draw_zoomed
 
 __all__ = [
-    "arrangements_answer",
-    "explanation_answer",
-    "figures_answer",
-    "fixture_answer",
-    "part_answer",
+    "describe_arrangements",
+    "describe_explanation",
+    "describe_figures",
+    "describe_fixture",
+    "describe_part",
     "place_in",
-    "proof_answer",
-    "rows_answer",
+    "describe_proof",
+    "describe_rows",
 ]
 
 # Undecided candidates of a proof that are listed; the result file has them all.
@@ -60,43 +60,43 @@ def place_in(sentence: str) -> dict[str, float] | None:
         return None
 
 
-def part_answer(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    face_of = face_numbers(workpiece)
+def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str, Any]:
+    face_of = map_segments_to_faces(workpiece)
     segments, number = [], 0
     for index, loop in enumerate(workpiece.loop_segments):
         for segment, (_, _, bulge) in zip(loop, workpiece.loops[index].tolist(), strict=True):
             segments.append(
-                {"number": number, "face": face_of[number], "loop": index, **shape(segment, bulge)}
+                {"number": number, "face": face_of[number], "loop": index, **describe_segment(segment, bulge)}
             )
             number += 1
     return {
         "name": workpiece.name,
         "loops": [(loop + 0.0).tolist() for loop in workpiece.loops],
         "segments": segments,
-        "faces": [face_answer(face.number, face.segment) for face in workpiece.faces],
+        "faces": [describe_face(face.number, face.segment) for face in workpiece.faces],
         "bounds": list(workpiece.bounds),
         "departure": workpiece.departure,
         "remarks": list(remarks),
         "solid": None,
-        **solid_data(workpiece.solid),
-        "outlines": own_answer(workpiece),
-        "own_faces": {role: own_numbers(workpiece, role) for role, _ in workpiece.outlines},
+        **describe_solid(workpiece.solid),
+        "outlines": describe_own_outlines(workpiece),
+        "own_faces": {role: list_own_face_numbers(workpiece, role) for role, _ in workpiece.outlines},
     }
 
 
-def face_numbers(workpiece: Workpiece) -> dict[int, int]:
+def map_segments_to_faces(workpiece: Workpiece) -> dict[int, int]:
     return {number: face.number for face in workpiece.faces for number in face.segments}
 
 
-def own_numbers(workpiece: Workpiece, role: str) -> list[int]:
+def list_own_face_numbers(workpiece: Workpiece, role: str) -> list[int]:
     """Return the faces of the segments of what carriers of a role meet, numbered on."""
     outline, first = workpiece.outline_of(role)
-    return [first + face for _, face in sorted(face_numbers(outline).items())]
+    return [first + face for _, face in sorted(map_segments_to_faces(outline).items())]
 
 
-def own_answer(workpiece: Workpiece) -> dict[str, Any]:
+def describe_own_outlines(workpiece: Workpiece) -> dict[str, Any]:
     """Describe what carriers with heights of their own meet of a part, by role, as a request takes it."""
-    entries = outlines_entry(workpiece).get("outlines", {})
+    entries = make_own_outlines_entry(workpiece).get("outlines", {})
     return {
         role: {"heights": [one.solid.low, one.solid.peg_height], **entries[role]}
         for role, one in workpiece.outlines
@@ -104,7 +104,7 @@ def own_answer(workpiece: Workpiece) -> dict[str, Any]:
     }
 
 
-def shape(segment: Segment, bulge: float) -> dict[str, Any]:
+def describe_segment(segment: Segment, bulge: float) -> dict[str, Any]:
     arc = segment if isinstance(segment, Arc) else None
     return {
         "start": list(segment.start),
@@ -115,19 +115,19 @@ def shape(segment: Segment, bulge: float) -> dict[str, Any]:
     }
 
 
-def face_answer(number: int, segment: Segment) -> dict[str, Any]:
+def describe_face(number: int, segment: Segment) -> dict[str, Any]:
     """Describe a face: its size is the length of a line or the radius of an arc; a hollow arc is concave."""
     if isinstance(segment, Arc):
         return {"number": number, "kind": "arc", "size": segment.radius, "concave": segment.sign < 0}
     return {"number": number, "kind": "line", "size": segment.length, "concave": False}
 
 
-def figures_answer() -> list[dict[str, Any]]:
+def describe_figures() -> list[dict[str, Any]]:
     names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
     return [{name: getattr(figure, name) for name in names} for figure in FIGURES]
 
 
-def rows_answer(
+def describe_rows(
     table: FixtureTable,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -135,22 +135,22 @@ def rows_answer(
     holds: Sequence[JawHold] = (),
 ) -> list[dict[str, Any]]:
     """Describe fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
-    longest = no_edge(workpiece, toolkit)
+    longest = find_edgeless_distance(workpiece, toolkit)
     fixtures = [make_fixture_of_row(table, toolkit, number, workpiece) for number in range(len(table))]
     for number, hold in enumerate(holds):
         fixtures[number] = evolve(
             fixtures[number], hold=hold, quality={**fixtures[number].quality, **hold.figures}
         )
-    rows = (row_answer(fixture, workpiece, toolkit, longest) for fixture in fixtures)
+    rows = (describe_row(fixture, workpiece, toolkit, longest) for fixture in fixtures)
     return [{"rank": rank, **row} for rank, row in zip(ranks, rows, strict=True)]
 
 
-def arrangements_answer(toolkit: Toolkit) -> list[dict[str, str]]:
+def describe_arrangements(toolkit: Toolkit) -> list[dict[str, str]]:
     """List the arrangements of a toolkit's fixtures: the title of each on the page, and its description."""
-    return [{"title": one.title, "words": arrangement_words(one, toolkit)} for one in toolkit.arrangements]
+    return [{"title": one.title, "words": describe_arrangement(one, toolkit)} for one in toolkit.arrangements]
 
 
-def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float) -> dict[str, Any]:
+def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float) -> dict[str, Any]:
     """Describe a fixture as a row of a list, without its rank, as it stands in the middle of its plate.
 
     Where ``edgeless``, its edge distance stands for none, which it does when it is ``longest``.
@@ -158,7 +158,7 @@ def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest
     stands = move_fixture_by_holes(fixture, toolkit, find_move_to_middle(fixture, toolkit, workpiece))
     return {
         "type": fixture.type,
-        "title": row_title(fixture, toolkit),
+        "title": make_row_title(fixture, toolkit),
         "settings": [
             {"sign": one.sign, "name": one.name, "length": one.length}
             for one in list_length_settings(stands, toolkit)
@@ -168,7 +168,7 @@ def row_answer(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest
         "theta_deg": fixture.pose.theta_deg,
         "hold": None if fixture.hold is None else hold_answer(fixture),
         "edgeless": is_edgeless(fixture.quality, longest),
-        "quality": {key: finite(value) for key, value in fixture.quality.items()},
+        "quality": {key: convert_finite(value) for key, value in fixture.quality.items()},
     }
 
 
@@ -186,16 +186,16 @@ def hold_answer(fixture: Fixture) -> dict[str, Any]:
     }
 
 
-def row_title(fixture: Fixture, toolkit: Toolkit) -> str:
-    """The heading of a fixture in a list: its type, or which parallels it lies on and where the stop is."""
+def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
+    """Return the heading of a fixture in a list: its type, or which parallels it lies on and where the stop is."""
     hold = fixture.hold
     if hold is None:
-        return toolkit.arrangement(fixture.type, fixture.direction).heading
+        return toolkit.find_arrangement(fixture.type, fixture.direction).heading
     on = f"On {hold.parallels:g} mm parallels" if hold.parallels else "On the bed"
     return f"{on}, stop {hold.stop}" if hold.stop else on
 
 
-def fixture_answer(
+def describe_fixture(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, size: tuple[float, float] = USUAL_SIZE
 ) -> dict[str, Any]:
     """Describe a fixture, without its rank: its row, its geometry, and a picture of a size in page units.
@@ -207,10 +207,10 @@ def fixture_answer(
     stands = move_fixture_by_holes(fixture, toolkit, move)
     pitch = toolkit.plates[0].pitch if toolkit.plates else (0.0, 0.0)
     placed = [steps * apart for steps, apart in zip(move, pitch, strict=True)]
-    bench = evolve(bench_of(stands, workpiece, toolkit), is_exact=True)
+    bench = evolve(make_bench(stands, workpiece, toolkit), is_exact=True)
     dx, dy = placed
     return {
-        **row_answer(fixture, workpiece, toolkit, no_edge(workpiece, toolkit)),
+        **describe_row(fixture, workpiece, toolkit, find_edgeless_distance(workpiece, toolkit)),
         "order": order_words(stands),
         "pairs": fixture.pair and fixture.pair.count,
         "mover": toolkit.moving.noun,
@@ -227,13 +227,13 @@ def fixture_answer(
         "pegs": [[peg.x, peg.y] for peg in fixture.pegs],
         "contacts": [[x - dx, y - dy] for (x, y), _ in bench.contacts],
         "normals": [list(normal) for _, normal in bench.contacts],
-        "forces": [finite(peg.force) for peg in fixture.pegs],
-        "carriers": carriers_answer(stands, bench.shown),
+        "forces": [convert_finite(peg.force) for peg in fixture.pegs],
+        "carriers": describe_carriers(stands, bench.shown),
         "picture": draw_zoomed(bench, workpiece.name, size, placed),
     }
 
 
-def carriers_answer(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
+def describe_carriers(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
     """List plates, then walls, then clamps."""
     numbers = defaultdict[str, list[int]](list)
     for number, peg in enumerate(fixture.pegs):
@@ -249,9 +249,9 @@ def carriers_answer(fixture: Fixture, seen: Shown) -> list[dict[str, Any]]:
     ]
 
 
-def proof_answer(proof: Proof) -> dict[str, Any]:
+def describe_proof(proof: Proof) -> dict[str, Any]:
     """Describe the proof of a search, with how many candidates are undecided and the first of them."""
-    entry = proof_entry(proof)
+    entry = make_proof_entry(proof)
     return {
         **entry,
         "undecided": entry["undecided"][:MOST_UNDECIDED],
@@ -259,7 +259,7 @@ def proof_answer(proof: Proof) -> dict[str, Any]:
     }
 
 
-def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
+def describe_explanation(explanation: Explanation, workpiece: Workpiece, toolkit: Toolkit) -> dict[str, Any]:
     nearest = explanation.nearest
     return {
         "contacts": explanation.contacts,
@@ -271,11 +271,11 @@ def explanation_answer(explanation: Explanation, workpiece: Workpiece, toolkit: 
         "nearest": None
         if nearest is None
         else {
-            "row": {"rank": None, **fixture_answer(nearest.fixture, workpiece, toolkit)},
+            "row": {"rank": None, **describe_fixture(nearest.fixture, workpiece, toolkit)},
             "words": nearest.words,
         },
         "helps": [
             {**said, "rules": list(help.rules)}
-            for said, help in zip(helps_data(explanation, "toolkit"), explanation.helps, strict=True)
+            for said, help in zip(describe_helps(explanation, "toolkit"), explanation.helps, strict=True)
         ],
     }

@@ -16,12 +16,12 @@ from workhold.errors import InputError
 from workhold.version import __version__
 from workhold.web import fixture_routes, job_routes, part_routes
 from workhold.web.answers import place_in
-from workhold.web.description import described
+from workhold.web.description import describe_app
 from workhold.web.guard import BASES, Guard, Hosts, ServerLimits
 from workhold.web.jobs import TooManyError
 from workhold.web.origins import Origins
 from workhold.web.pool import BusyError, FailedError, StoppedError
-from workhold.web.request_forms import sentence_of
+from workhold.web.request_forms import explain_request_error
 from workhold.web.state import ServerState, state_of
 
 __all__ = ["create_app"]
@@ -87,7 +87,7 @@ def create_app(
     app.add_middleware(
         Guard, hosts=hosts or Hosts(), limits=limits, token=token, origins=origins or Origins()
     )
-    app.openapi = lambda: described(app)  # type: ignore[method-assign]
+    app.openapi = lambda: describe_app(app)  # type: ignore[method-assign]
     return app
 
 
@@ -103,7 +103,7 @@ async def page(request: Request) -> Response:
 
 
 async def method_page(request: Request) -> Response:
-    """Leads to the page that explains the method."""
+    """Lead to the page that explains the method."""
     return Response(status_code=307, headers={"Location": "static/method/index.html"})
 
 
@@ -118,7 +118,7 @@ async def static_file(request: Request, path: str) -> Response:
     return Response(file.content, headers=headers)
 
 
-def wrong(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
+def make_error_response(status: int, sentence: str, headers: dict[str, str] | None = None) -> JSONResponse:
     more = {"Retry-After": "1"} if status in (429, 503) else {}
     if status in (408, 413):
         more["Connection"] = "close"
@@ -127,11 +127,11 @@ def wrong(status: int, sentence: str, headers: dict[str, str] | None = None) -> 
 
 
 def add_error_handlers(app: FastAPI) -> None:
-    """Answers every error with a status and one sentence."""
+    """Answer every error with a status and one sentence."""
 
     def on(error_class: type[Exception], status: int) -> None:
         async def handler(request: Request, error: Exception) -> Response:
-            return wrong(status, str(error) or "The search was stopped.")
+            return make_error_response(status, str(error) or "The search was stopped.")
 
         app.add_exception_handler(error_class, handler)
 
@@ -143,18 +143,18 @@ def add_error_handlers(app: FastAPI) -> None:
 
     async def refused(request: Request, error: Exception) -> Response:
         assert isinstance(error, RequestValidationError)
-        return wrong(400, sentence_of(dict(error.errors()[0])))
+        return make_error_response(400, explain_request_error(dict(error.errors()[0])))
 
     async def plain(request: Request, error: Exception) -> Response:
         assert isinstance(error, HTTPException)
         sentence = SENTENCES.get(str(error.detail), str(error.detail))
-        return wrong(error.status_code, sentence, dict(error.headers or {}))
+        return make_error_response(error.status_code, sentence, dict(error.headers or {}))
 
     async def left(request: Request, error: Exception) -> Response:
-        return wrong(400, "The request ended before it was complete.")
+        return make_error_response(400, "The request ended before it was complete.")
 
     async def fault(request: Request, error: Exception) -> Response:
-        return wrong(500, "The program has a mistake, which is not yours; please report it.")
+        return make_error_response(500, "The program has a mistake, which is not yours; please report it.")
 
     app.add_exception_handler(RequestValidationError, refused)
     app.add_exception_handler(HTTPException, plain)

@@ -26,7 +26,7 @@ __all__ = [
     "JobAddress",
     "JobAnswer",
     "PlaceAnswer",
-    "described",
+    "describe_app",
 ]
 
 STATUSES = ("400", "401", "403", "404", "408", "409", "413", "415", "429", "500", "503")
@@ -41,7 +41,7 @@ NONE_NAME = "Y5oZ7uUeJ0cS4bK1d8w2Lg"
 FAMILY_NAME = "c3Rk8tWq5bXo1nZ7yVh0Pw"
 
 
-def described(app: FastAPI) -> dict[str, Any]:
+def describe_app(app: FastAPI) -> dict[str, Any]:
     """Make the description, once."""
     if app.openapi_schema is None:
         schema = get_openapi(

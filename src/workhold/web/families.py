@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 from attrs import evolve, frozen
 from pydantic import Field
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import RULING_OUT, SearchQuestion
 from workhold.errors import InputError
-from workhold.files.declared_forms import given_in, with_fields
+from workhold.files.declared_forms import add_declared_fields, collect_given_values
 from workhold.model.quality import read_asked_ranking
 from workhold.model.query import Query
-from workhold.presenting.data import finite
+from workhold.presenting.data import convert_finite
 from workhold.web.forms import HeldIn, ToleranceForm
 from workhold.web.request_forms import LARGEST, Form, Name, WorkpieceForm
 from workhold.web.searching import AskedQueries
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 __all__ = ["PAPERS", "FamilyForm", "FamilyFound", "FamilyPaper", "find_family", "make_family_paper"]
 
 MOST_PARTS = 50
-OF_FAMILY = declarations_of(SearchQuestion, [RULING_OUT])
+OF_FAMILY = list_declarations(SearchQuestion, [RULING_OUT])
 # Of the time for a search, the share in which the proof must end.
 PROOF = 0.25
 # What can be made of a family: its content type.
@@ -40,7 +40,7 @@ PAPERS = {
 }
 
 
-@with_fields(OF_FAMILY, LARGEST)
+@add_declared_fields(OF_FAMILY, LARGEST)
 class FamilyForm(Form):
     """Parts that are to be held in one toolkit with few set-ups."""
 
@@ -51,18 +51,18 @@ class FamilyForm(Form):
     prefer: Name | None = None
     tolerance: ToleranceForm | None = None
 
-    def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
-        """The query of each part, and what the part is called; refuses where the solver is not installed."""
+    def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
+        """Return the query of each part, and what the part is called; refuse where the solver is not installed."""
         from workhold.family.members import RANKINGS
         from workhold.family.solver import load_solver
 
         load_solver()
-        toolkit = self.toolkit.toolkit()
+        toolkit = self.toolkit.to_toolkit()
         usual = RANKINGS[toolkit.travels]
         ranking = read_asked_ranking(self.ranking, self.prefer, ()) or usual
-        tolerance = None if self.tolerance is None else self.tolerance.tolerance()
-        parts = [form.workpiece(most_segments) for form in self.workpieces]
-        asked = given_in(self, OF_FAMILY) | {"rank_by": ranking, "tolerance": tolerance}
+        tolerance = None if self.tolerance is None else self.tolerance.to_tolerance()
+        parts = [form.to_workpiece(most_segments) for form in self.workpieces]
+        asked = collect_given_values(self, OF_FAMILY) | {"rank_by": ranking, "tolerance": tolerance}
         return tuple((part.name, Query(part, toolkit, self.types, **asked)) for part in parts)
 
 
@@ -89,12 +89,12 @@ class FamilyFound:
             points.append(
                 {
                     "setups": plan.point.setups,
-                    "loss": finite(plan.point.loss),
+                    "loss": convert_finite(plan.point.loss),
                     "at_least": plan.point.at_least,
                     "is_least": plan.point.is_least,
                     "pegs_moved": plan.moved,
                     "worst": worst.member.name,
-                    "figure": finite(worst.figure),
+                    "figure": convert_finite(worst.figure),
                 }
             )
         return {
@@ -104,7 +104,7 @@ class FamilyFound:
             "points": points,
         }
 
-    def plan(self, setups: int | None) -> Plan:
+    def choose_plan(self, setups: int | None) -> Plan:
         """Return the plan with at most so many set-ups; None is the fewest."""
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
@@ -114,16 +114,16 @@ class FamilyFound:
 
 def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
     """Find a family; reports are ("progress", fraction, found)."""
-    from workhold.family.family import Asked, family_of, family_text
+    from workhold.family.family import Asked, make_family, write_family_json
 
     def progress(fraction: float, found: int) -> None:
         order.report(("progress", fraction, found))
 
     queries = payload.queries
-    names = numbered([name for name, _ in queries])
+    names = number_repeated_names([name for name, _ in queries])
     asked = [Asked(name, query) for name, (_, query) in zip(names, queries, strict=True)]
-    family = family_of(asked, seconds=PROOF * order.seconds, progress=progress)
-    text, plans = family_text(family), family.plans
+    family = make_family(asked, seconds=PROOF * order.seconds, progress=progress)
+    text, plans = write_family_json(family), family.plans
     small = {
         id(one): evolve(
             one,
@@ -150,10 +150,10 @@ def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
     return FamilyFound(evolve(family, members=tuple(small.values()), table=None), slim, text)
 
 
-def numbered(names: list[str]) -> list[str]:
-    """Numbers names that are repeated, so that no two are the same.
+def number_repeated_names(names: list[str]) -> list[str]:
+    """Return the numbers names that are repeated, so that no two are the same.
 
-    >>> numbered(["a", "b", "a"])
+    >>> number_repeated_names(["a", "b", "a"])
     ['a', 'b', 'a (2)']
     """
     return [
@@ -175,16 +175,16 @@ class FamilyPaper:
 
 def make_family_paper(payload: FamilyPaper, order: Order) -> bytes:
     from workhold.family.pages import draw_curve, draw_setups
-    from workhold.presenting.papers import pages_bytes
-    from workhold.units import unit_named
+    from workhold.presenting.papers import make_pages_file
+    from workhold.units import find_unit
 
     found = payload.found
     if payload.kind == "plans.json":
         return found.text.encode("utf-8")
     if payload.kind == "curve.svg":
-        chosen = None if payload.setups is None else found.plan(payload.setups).point
+        chosen = None if payload.setups is None else found.choose_plan(payload.setups).point
         return draw_curve(found.family, chosen).encode("utf-8")
     pages = draw_setups(
-        found.plan(payload.setups), found.family.figure, payload.day, unit_named(payload.unit)
+        found.choose_plan(payload.setups), found.family.figure, payload.day, find_unit(payload.unit)
     )
-    return pages_bytes(pages, Path(payload.kind).suffix, payload.day)
+    return make_pages_file(pages, Path(payload.kind).suffix, payload.day)

@@ -12,17 +12,17 @@ from pydantic import Field
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from workhold.asking.declaring import Declaration, declarations_of
+from workhold.asking.declaring import Declaration, list_declarations
 from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
-from workhold.files.declared_forms import given_in, with_fields
+from workhold.files.declared_forms import add_declared_fields, collect_given_values
 from workhold.limits import MOST_LENGTH
 from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.presenting.zoomed_picture import draw_small
 from workhold.seating.clamping import ByHand
-from workhold.units import Unit, unit_named
-from workhold.web.answers import USUAL_SIZE, fixture_answer
+from workhold.units import Unit, find_unit
+from workhold.web.answers import USUAL_SIZE, describe_fixture
 from workhold.web.fixture_tasks import (
     AT_ONCE,
     KINDS,
@@ -32,13 +32,19 @@ from workhold.web.fixture_tasks import (
     ClosingOrder,
     Held,
     PaperOrder,
-    seating_answer,
+    describe_seating,
 )
-from workhold.web.forms import LoadsForm, asked_loads
-from workhold.web.job_routes import attachment, found_job, result_of_job
-from workhold.web.program_forms import forces_answer, passing_answer
-from workhold.web.request_forms import AddressForm, ChosenSupportsForm, FirstSideForm, SupportsForm, asked_of
-from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
+from workhold.web.forms import LoadsForm, read_loads_in_address
+from workhold.web.job_routes import find_job, get_job_result, make_attachment_header
+from workhold.web.program_forms import describe_clearance, describe_forces
+from workhold.web.request_forms import (
+    AddressForm,
+    ChosenSupportsForm,
+    FirstSideForm,
+    SupportsForm,
+    read_form_in_address,
+)
+from workhold.web.state import CheckedRoute, run_at_desk, run_at_desk_while_connected, state_of
 from workhold.web.support_tasks import SupportsOrder
 
 __all__ = ["router"]
@@ -66,7 +72,7 @@ Revision = Annotated[
 ]
 
 
-@with_fields(declarations_of(SheetQuestion), MOST_LENGTH)
+@add_declared_fields(list_declarations(SheetQuestion), MOST_LENGTH)
 class PaperForm(AddressForm):
     """What is asked of a paper; lengths in the unit asked for."""
 
@@ -82,23 +88,23 @@ class PaperForm(AddressForm):
     )
     revision: Revision = None
 
-    def question(self) -> SheetQuestion:
+    def to_sheet_question(self) -> SheetQuestion:
         """Return what stands on the sheet, in mm; its day is today where none is asked for."""
-        rows, unit = declarations_of(SheetQuestion), unit_named(self.unit)
+        rows, unit = list_declarations(SheetQuestion), find_unit(self.unit)
         given = {
-            row.name: in_mm(row, value, unit)
-            for row, value in zip(rows, given_in(self, rows).values(), strict=True)
+            row.name: convert_field_to_mm(row, value, unit)
+            for row, value in zip(rows, collect_given_values(self, rows).values(), strict=True)
         }
         return SheetQuestion(**given | {"day": given["day"] or date.today()})
 
 
-def in_mm(row: Declaration, value: Any, unit: Unit) -> Any:
+def convert_field_to_mm(row: Declaration, value: Any, unit: Unit) -> Any:
     if row.form == "length" and value is not None:
-        return unit.length(value)
-    return tuple(map(unit.length, value)) if row.form == "place" and value is not None else value
+        return unit.to_mm(value)
+    return tuple(map(unit.to_mm, value)) if row.form == "place" and value is not None else value
 
 
-def ranked(result: Result, rank: int) -> int:
+def find_ranked_fixture(result: Result, rank: int) -> int:
     """Return the index of a fixture; answers 404 when there is none of that rank."""
     if rank > len(result):
         raise HTTPException(404, f"There is no fixture {rank}: {len(result)} are listed.")
@@ -106,17 +112,17 @@ def ranked(result: Result, rank: int) -> int:
 
 
 # Before what takes any last word for a paper.
-async def seated(
+async def find_seating(
     request: Request, name: str, rank: int, revision: int | None
 ) -> tuple[Held, Seating | ByHand]:
-    """Find the seating of a fixture, or how it is put into two clamps, once, and keeps it with the job."""
-    job = found_job(request, name)
-    result = result_of_job(job, revision)
-    held = result[ranked(result, rank)], result.workpiece, result.toolkit
+    """Find the seating of a fixture, or how it is put into two clamps, once, and keep it with the job."""
+    job = find_job(request, name)
+    result = get_job_result(job, revision)
+    held = result[find_ranked_fixture(result, rank)], result.workpiece, result.toolkit
     key = (job.revision, rank)
     if key not in job.seatings:
         # On a first run kernels are compiled for it, which takes as long as a search may.
-        found = await at_desk(request, "seating", held, state_of(request).limits.seconds)
+        found = await run_at_desk(request, "seating", held, state_of(request).limits.seconds)
         job.keep_seating(key, found)
         return held, found
     return held, job.seatings[key]
@@ -127,8 +133,8 @@ async def seating(
     request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
 ) -> dict[str, Any]:
     """How wide open the part is still caught, every other seat of the same pegs, and both in sentences."""
-    held, found = await seated(request, name, rank, revision)
-    return {"rank": rank, **seating_answer(held, found, unit)}
+    held, found = await find_seating(request, name, rank, revision)
+    return {"rank": rank, **describe_seating(held, found, unit)}
 
 
 @router.post("/closing", summary="Close the jaws on a part that was put in by hand")
@@ -141,13 +147,13 @@ async def closing(
     ``wrong``, ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs
     up.
     """
-    held, found = await seated(request, name, rank, revision)
+    held, found = await find_seating(request, name, rank, revision)
     if isinstance(found, ByHand):
         raise InputError(
             "with two clamps no closing can be shown: you push the part against its locators by hand."
         )
     order = ClosingOrder(held, found, form)
-    answer: dict[str, Any] | None = await at_desk_while_heard(request, "closing", order)
+    answer: dict[str, Any] | None = await run_at_desk_while_connected(request, "closing", order)
     return answer
 
 
@@ -166,12 +172,12 @@ async def fixture(
     distance in mm. Its path is that of the tool's axis there, in the part's coordinates. With cutting forces
     ``program_forces`` says which force they ask for, and what of which line does.
     """
-    result = result_of_job(found_job(request, name), revision)
-    index = ranked(result, rank)
+    result = get_job_result(find_job(request, name), revision)
+    index = find_ranked_fixture(result, rank)
     told = await asyncio.to_thread(
-        fixture_answer, result[index], result.workpiece, result.toolkit, (width, height)
+        describe_fixture, result[index], result.workpiece, result.toolkit, (width, height)
     )
-    passing, forces = passing_answer(result, index), forces_answer(result, index)
+    passing, forces = describe_clearance(result, index), describe_forces(result, index)
     return {"rank": rank, **told, "passing": passing, "program_forces": forces}
 
 
@@ -186,11 +192,11 @@ async def small(request: Request, name: str, rank: Rank, revision: Revision = No
 
     There is no picture (204) when the list is of another revision by now.
     """
-    job = found_job(request, name)
+    job = find_job(request, name)
     if revision is not None and revision != job.revision:
         return Response(status_code=204)
-    result = result_of_job(job)
-    chosen = result[ranked(result, rank)]
+    result = get_job_result(job)
+    chosen = result[find_ranked_fixture(result, rank)]
     content = await asyncio.to_thread(draw_small, chosen, result.workpiece, result.toolkit)
     return Response(content, media_type="image/svg+xml")
 
@@ -200,9 +206,9 @@ async def loads(
     request: Request, name: str, rank: Rank, form: LoadsForm, revision: Revision = None
 ) -> dict[str, Any]:
     """Peg forces in N for the worst point and direction of each load, and the jaw force that is needed."""
-    result = result_of_job(found_job(request, name), revision)
-    chosen = result[ranked(result, rank)]
-    cases = await at_desk(request, "loads", (chosen, result.workpiece, result.toolkit, form))
+    result = get_job_result(find_job(request, name), revision)
+    chosen = result[find_ranked_fixture(result, rank)]
+    cases = await run_at_desk(request, "loads", (chosen, result.workpiece, result.toolkit, form))
     return {"rank": rank, "cases": cases}
 
 
@@ -214,9 +220,9 @@ async def supports(
 
     The search for them stops when the client hangs up.
     """
-    result = result_of_job(found_job(request, name), revision)
-    asked = SupportsOrder(result[ranked(result, rank)], result.query, form)
-    return {"rank": rank, **await at_desk_while_heard(request, "supports", asked)}
+    result = get_job_result(find_job(request, name), revision)
+    asked = SupportsOrder(result[find_ranked_fixture(result, rank)], result.query, form)
+    return {"rank": rank, **await run_at_desk_while_connected(request, "supports", asked)}
 
 
 @router.get("/warnings", summary="The warnings of a fixture")
@@ -231,26 +237,26 @@ async def warnings(
     revision: Revision = None,
 ) -> dict[str, Any]:
     """The sentences of the setup sheet of a fixture, under its search's loads or those given as JSON."""
-    result = result_of_job(found_job(request, name), revision)
-    index = ranked(result, rank)
-    others = result.table.same_holes(index)
+    result = get_job_result(find_job(request, name), revision)
+    index = find_ranked_fixture(result, rank)
+    others = result.table.count_in_same_holes(index)
     small = result.part(slice(index, index + 1))
     asked = {
-        "unit": unit_named(unit),
+        "unit": find_unit(unit),
         "jaw_force": jaw_force,
         "jaw": jaw,
-        "loads": asked_loads(loads),
+        "loads": read_loads_in_address(loads),
         "others": others,
     }
-    return {"rank": rank, **await at_desk(request, "warnings", (small, index == 0, asked))}
+    return {"rank": rank, **await run_at_desk(request, "warnings", (small, index == 0, asked))}
 
 
-def before_of(request: Request, form: FirstSideForm | None) -> Before | None:
+def make_set_up_before(request: Request, form: FirstSideForm | None) -> Before | None:
     """Return the set-up of the other side before a paper's, and what it cuts; None where there is none."""
     if form is None:
         return None
-    result = result_of_job(found_job(request, form.job))
-    fixture = result[ranked(result, form.rank)]
+    result = get_job_result(find_job(request, form.job))
+    fixture = result[find_ranked_fixture(result, form.rank)]
     ruled_out = evolve(result.query.restrictions, avoid=tuple(form.cut))
     return evolve(result.query, restrictions=ruled_out), fixture
 
@@ -269,30 +275,32 @@ async def paper(
 
     Lengths are in the unit asked for, loads JSON as in a search, and the date is today's if not given.
     """
-    job = found_job(request, name)
-    result = result_of_job(job, asked.revision, when_over=kind not in AT_ONCE)
-    ranked(result, rank)
-    chosen = asked_of(ChosenSupportsForm, "supports", asked.supports)
-    before = before_of(request, asked_of(FirstSideForm, "first_side", asked.first_side))
+    job = find_job(request, name)
+    result = get_job_result(job, asked.revision, when_over=kind not in AT_ONCE)
+    find_ranked_fixture(result, rank)
+    chosen = read_form_in_address(ChosenSupportsForm, "supports", asked.supports)
+    before = make_set_up_before(request, read_form_in_address(FirstSideForm, "first_side", asked.first_side))
     order = PaperOrder(
         kind,
         # Only a sheet names the other fixtures.
         result if kind.startswith("sheet") else result.part(slice(rank - 1, rank)),
         rank,
         len(result),
-        asked.question(),
-        unit_named(asked.unit),
-        asked_loads(asked.loads),
+        asked.to_sheet_question(),
+        find_unit(asked.unit),
+        read_loads_in_address(asked.loads),
         job.result_hash,
         chosen,
         before,
         job.shape if kind in OF_BODIES else None,
     )
-    content, result_hash = await at_desk(request, "paper", order)
+    content, result_hash = await run_at_desk(request, "paper", order)
     if result_hash is not None and job.result is result:
         job.result_hash = result_hash
     headers = {}
     if kind != "picture.svg":
         what, ending = kind.split(".")
-        headers["Content-Disposition"] = attachment(f"{result.workpiece.name}-{what}-{rank}", ending)
+        headers["Content-Disposition"] = make_attachment_header(
+            f"{result.workpiece.name}-{what}-{rank}", ending
+        )
     return Response(content, media_type=KINDS[kind][0], headers=headers)

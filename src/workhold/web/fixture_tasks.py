@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from attrs import evolve, frozen
 from pydantic import Field
 
-from workhold.asking.declaring import values_of
+from workhold.asking.declaring import collect_declared_values
 from workhold.asking.sheet import SheetQuestion
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences
-from workhold.drawing.seats import caption
+from workhold.drawing.seats import write_caption
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
@@ -29,12 +29,12 @@ from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.support_triples import ChosenSupports
 from workhold.model.workpiece import Workpiece
-from workhold.presenting.data import finite
+from workhold.presenting.data import convert_finite
 from workhold.seating.clamping import ByHand, by_hand
 from workhold.seating.pattern import Pattern
-from workhold.units import Unit, unit_named
+from workhold.units import Unit, find_unit
 from workhold.web.request_forms import LARGEST, ChosenSupportsForm, Form, Number
-from workhold.web.support_tasks import SupportsOrder, chosen_supports
+from workhold.web.support_tasks import SupportsOrder, choose_supports
 from workhold.web.worker import Order
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ __all__ = [
     "find_seating",
     "has_step",
     "make_paper",
-    "seating_answer",
+    "describe_seating",
 ]
 
 # What another set-up was asked for, and its fixture.
@@ -103,14 +103,14 @@ class PaperOrder:
     def fixture(self) -> Fixture:
         return self.result[self.index]
 
-    def chosen_supports(self) -> ChosenSupports | None:
-        """Find the supports asked for and chooses a set of them; None where none are asked for,
-        or none hold the part.
+    def find_chosen_supports(self) -> ChosenSupports | None:
+        """Find the supports asked for and choose a set of them; None where none are asked for, or none hold
+        the part.
         """
         if self.supports is None:
             return None
         asked = SupportsOrder(self.fixture, self.result.query, self.supports)
-        return chosen_supports(asked, self.supports.chosen)
+        return choose_supports(asked, self.supports.chosen)
 
 
 def has_step() -> bool:
@@ -123,34 +123,37 @@ def make_paper(payload: PaperOrder, order: Order) -> tuple[bytes, str | None]:
     return KINDS[payload.kind][1](payload)
 
 
-def sheet(order: PaperOrder) -> tuple[bytes, str | None]:
-    from workhold.drawing.sheet import result_sheet
+def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
+    from workhold.drawing.sheet import draw_setup_sheet
     from workhold.model.first_side import first_side
-    from workhold.presenting.papers import pages_bytes
+    from workhold.presenting.papers import make_pages_file
 
     digest = order.result_hash or hash_of(order.result)
-    asked: dict[str, Any] = values_of(order.question) | {"loads": order.loads, "unit": order.unit}
-    chosen = order.chosen_supports()
+    asked: dict[str, Any] = collect_declared_values(order.question) | {
+        "loads": order.loads,
+        "unit": order.unit,
+    }
+    chosen = order.find_chosen_supports()
     if chosen is not None:
         asked |= {"supports": chosen, "thickness": chosen.supports.request.thickness}
     if order.before is not None:
         asked["first_side"] = first_side(order.fixture, order.result.query, *order.before)
-    pages = result_sheet(order.result, order.rank, result_hash=digest, **asked)
+    pages = draw_setup_sheet(order.result, order.rank, result_hash=digest, **asked)
     assert order.question.day is not None
-    return pages_bytes(pages, Path(order.kind).suffix, order.question.day), digest
+    return make_pages_file(pages, Path(order.kind).suffix, order.question.day), digest
 
 
 def hash_of(result: Result) -> str:
-    from workhold.files.result.writer import result_text
+    from workhold.files.result.writer import write_result_text
 
     digest = sha256()
-    for text in result_text(result):
+    for text in write_result_text(result):
         digest.update(text.encode("utf-8"))
     return digest.hexdigest()
 
 
 def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
-    from workhold.presenting.papers import model_bytes
+    from workhold.presenting.papers import make_model_file
 
     ending = Path(order.kind).suffix
     if ending == ".step" and not has_step():
@@ -159,25 +162,25 @@ def set_up(order: PaperOrder) -> tuple[bytes, str | None]:
         raise InputError(
             f"this server writes no STEP files: take the DXF, or install {REQUIREMENT} beside it."
         )
-    settings = values_of(order.question) | {"unit": order.unit}
+    settings = collect_declared_values(order.question) | {"unit": order.unit}
     if ending == ".csv":
         settings["zero"] = None
-    chosen = order.chosen_supports() if ending == ".step" else None
+    chosen = order.find_chosen_supports() if ending == ".step" else None
     if chosen is not None:
         settings |= {"supports": chosen, "thickness": None}
     settings["shape"] = order.shape
-    return model_bytes(order.fixture, order.result, ending, settings), None
+    return make_model_file(order.fixture, order.result, ending, settings), None
 
 
-def picture(order: PaperOrder) -> tuple[bytes, str | None]:
+def make_picture_file(order: PaperOrder) -> tuple[bytes, str | None]:
     from workhold.drawing.fixture_pictures import draw_fixture
-    from workhold.drawing.path_drawn import planned_path
+    from workhold.drawing.path_drawn import make_planned_path
     from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes
 
     result = order.result
     title = f"Fixture {order.rank} of {order.count}"
     path, move = (
-        planned_path(result, order.index),
+        make_planned_path(result, order.index),
         find_move_to_middle(order.fixture, result.toolkit, result.workpiece),
     )
     fixture = move_fixture_by_holes(order.fixture, result.toolkit, move)
@@ -186,25 +189,25 @@ def picture(order: PaperOrder) -> tuple[bytes, str | None]:
     return svg.encode("utf-8"), None
 
 
-def bodies(order: PaperOrder) -> tuple[bytes, str | None]:
+def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
     from workhold.presenting.assembly import Assembly
 
-    chosen = order.chosen_supports()
+    chosen = order.find_chosen_supports()
     names = ("peg_length", "peg_height", *(("thickness",) if chosen is None else ()))
     lengths = {name: getattr(order.question, name) for name in names}
-    assembly = Assembly.of(order.fixture, order.result, lengths, chosen, order.shape)
-    return assembly.content(".glb"), None
+    assembly = Assembly.from_fixture(order.fixture, order.result, lengths, chosen, order.shape)
+    return assembly.make_file_content(".glb"), None
 
 
 # What can be made: its content type, and what makes it.
 KINDS: dict[str, tuple[str, Callable[[PaperOrder], tuple[bytes, str | None]]]] = {
-    "sheet.pdf": ("application/pdf", sheet),
-    "sheet.svg": ("image/svg+xml", sheet),
+    "sheet.pdf": ("application/pdf", make_sheet_file),
+    "sheet.svg": ("image/svg+xml", make_sheet_file),
     "setup.dxf": ("image/vnd.dxf", set_up),
     "setup.step": ("model/step", set_up),
-    "picture.svg": ("image/svg+xml", picture),
+    "picture.svg": ("image/svg+xml", make_picture_file),
     "pins.csv": ("text/csv; charset=utf-8", set_up),
-    "assembly.glb": ("model/gltf-binary", bodies),
+    "assembly.glb": ("model/gltf-binary", make_bodies_file),
 }
 
 
@@ -243,12 +246,14 @@ class ClosingOrder:
     form: ClosingForm
 
 
-def words_of(held: Held, seating: Seating, unit: str) -> SeatingSentences:
-    return SeatingSentences(seating, held[0], held[2], lengths_of(held, unit))
+def make_seating_sentences(held: Held, seating: Seating, unit: str) -> SeatingSentences:
+    return SeatingSentences(seating, held[0], held[2], make_length_unit(held, unit))
 
 
-def lengths_of(held: Held, unit: str) -> LengthUnit:
-    return LengthUnit.suiting(unit_named(unit), min(min(carrier.pitch) for carrier in held[2].carriers))
+def make_length_unit(held: Held, unit: str) -> LengthUnit:
+    return LengthUnit.from_typical_length(
+        find_unit(unit), min(min(carrier.pitch) for carrier in held[2].carriers)
+    )
 
 
 def find_seating(held: Held, order: Order) -> Seating | ByHand:
@@ -262,7 +267,7 @@ def find_seating(held: Held, order: Order) -> Seating | ByHand:
     return seating
 
 
-def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str, Any]:
+def describe_seating(held: Held, seating: Seating | ByHand, unit: str) -> dict[str, Any]:
     """Describe a seating by the fields of a result file and their meaning; with two clamps by ``by_hand``
     alone.
 
@@ -272,8 +277,8 @@ def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str
     hold the part, and ``done`` is a word for opened. ``captions`` are lines for each seat.
     """
     if isinstance(seating, ByHand):
-        return {"by_hand": seating.as_fields(lengths_of(held, unit).words)}
-    words, seats = words_of(held, seating, unit), list(seating.seats)
+        return {"by_hand": seating.as_fields(make_length_unit(held, unit).format_length)}
+    words, seats = make_seating_sentences(held, seating, unit), list(seating.seats)
     travel = words.gauge.carrier.travel
     assert travel is not None
     # Of what clamps by opening, pegs that meet are the end.
@@ -284,11 +289,11 @@ def seating_answer(held: Held, seating: Seating | ByHand, unit: str) -> dict[str
         "own": seats.index(words.own),
         "nearest": [seats.index(seat) for seat in words.wrong],
         "clamping": seating.clamping,
-        "widest": finite(widest),
+        "widest": convert_finite(widest),
         "done": words.gauge.ways.done,
-        "captions": [caption(words, seat) for seat in seats],
-        "steps": words.steps(held[1]),
-        "words": words.wrong_words(),
+        "captions": [write_caption(words, seat) for seat in seats],
+        "steps": words.list_steps(held[1]),
+        "words": words.describe_wrong_seats(),
     }
 
 
@@ -316,7 +321,7 @@ def close(payload: ClosingOrder, order: Order) -> dict[str, Any] | None:
         "way": [[one.theta_deg, one.x, one.y, more] for one, more in zip(closed.poses, opened, strict=True)],
         "ending": closed.ending,
         "seat": None if closed.seat is None else seating.seats.index(closed.seat),
-        "words": words_of(payload.held, seating, form.unit).ended(
+        "words": make_seating_sentences(payload.held, seating, form.unit).describe_ending(
             closed.ending, closed.seat, closed.travels[-1]
         ),
     }

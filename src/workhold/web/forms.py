@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from attrs import evolve
 from pydantic import Field, TypeAdapter
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import LOADS, RANKING, RULING_OUT, SEARCH, SEATING, SearchQuestion
-from workhold.files.declared_forms import given_in, with_fields
-from workhold.files.input_forms import forms_by_noun, one_of, optional
+from workhold.files.declared_forms import add_declared_fields, collect_given_values
+from workhold.files.input_forms import join_forms, make_forms_by_noun, make_optional_entry
 from workhold.files.result.forms import LoadPart, RestrictionsPart, TolerancePart
 from workhold.fixels.contacts import DIRECTIONS
-from workhold.fixels.kinds import USUAL, table_of, toolkit_of
+from workhold.fixels.kinds import USUAL, find_table, make_toolkit
 from workhold.fixels.support_hardware import HARDWARE
 from workhold.fixels.table import ToolkitField
 from workhold.fixels.toolkit import Toolkit
@@ -37,14 +37,14 @@ from workhold.web.request_forms import (
     Number,
     Point,
     WorkpieceForm,
-    of_address,
+    parse_from_address,
 )
 
 __all__ = [
     "ExploreForm",
     "JobForm",
     "LoadsForm",
-    "asked_loads",
+    "read_loads_in_address",
 ]
 
 
@@ -52,9 +52,9 @@ MOST_NAMES, MOST_TOOLKITS = 500, 60
 # What a comparison of toolkits asks as well, and what a search in one asks besides.
 EVERYWHERE = (RULING_OUT, LOADS, RANKING)
 OF_SEARCHES = tuple(
-    row for row in declarations_of(SearchQuestion) if row.section in EVERYWHERE or row.name == "listing"
+    row for row in list_declarations(SearchQuestion) if row.section in EVERYWHERE or row.name == "listing"
 )
-OF_ONE = tuple(row for row in declarations_of(SearchQuestion, (SEARCH, SEATING)) if row not in OF_SEARCHES)
+OF_ONE = tuple(row for row in list_declarations(SearchQuestion, (SEARCH, SEATING)) if row not in OF_SEARCHES)
 
 DirectionPair = Annotated[list[Name], Field(min_length=2, max_length=2)]
 
@@ -65,18 +65,18 @@ class ToolkitRequest(Form):
     if TYPE_CHECKING:
         kind: str
 
-    def toolkit(self) -> Toolkit:
-        return toolkit_of(self.kind, self.model_dump(exclude={"kind", "title"}))
+    def to_toolkit(self) -> Toolkit:
+        return make_toolkit(self.kind, self.model_dump(exclude={"kind", "title"}))
 
     def __reduce__(self) -> Any:
         # The forms of kinds are made from their tables, so that another process does not find them by name.
-        return form_again, (isinstance(self, NamedToolkitRequest), self.model_dump())
+        return restore_form, (isinstance(self, NamedToolkitRequest), self.model_dump())
 
 
-def form_again(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
+def restore_form(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
     """Return the form of a toolkit as another process had it."""
     forms = NAMED_FORMS if is_named else FORMS
-    form: ToolkitRequest = forms[table_of(said["kind"]).noun](**said)
+    form: ToolkitRequest = forms[find_table(said["kind"]).noun](**said)
     return form
 
 
@@ -100,13 +100,15 @@ TYPES: Mapping[str, Any] = {
 }
 
 
-def asked_field(row: ToolkitField) -> tuple[Any, Any]:
-    """Type and default of a field in a request."""
-    return optional(Annotated[int, Field(ge=1, le=row.most)] if row.form == "count" else TYPES[row.form], row)
+def make_field_entry(row: ToolkitField) -> tuple[Any, Any]:
+    """Return the type and default of a field in a request."""
+    return make_optional_entry(
+        Annotated[int, Field(ge=1, le=row.most)] if row.form == "count" else TYPES[row.form], row
+    )
 
 
-def asked_kind(kinds: tuple[str, ...]) -> tuple[Any, Any]:
-    """Type and default of the kind; where it is the usual one it may be left out or be an alias."""
+def make_kind_entry(kinds: tuple[str, ...]) -> tuple[Any, Any]:
+    """Return the type and default of the kind; where it is the usual one it may be left out or be an alias."""
     return (Name, USUAL) if USUAL in kinds else (Literal[kinds], ...)
 
 
@@ -117,12 +119,14 @@ RINGS = Annotated[
 FIGURES = Annotated[dict[Name, Number | RINGS | None], Field(max_length=MOST_RANGES)]
 HARDWARE_FORMS = dict.fromkeys(HARDWARE, (FIGURES | None, None))
 # By the noun of their tables.
-FORMS = forms_by_noun(ToolkitRequest, "{}Form", asked_field, asked_kind, "{}; lengths in mm.", HARDWARE_FORMS)
-NAMED_FORMS = forms_by_noun(
+FORMS = make_forms_by_noun(
+    ToolkitRequest, "{}Form", make_field_entry, make_kind_entry, "{}; lengths in mm.", HARDWARE_FORMS
+)
+NAMED_FORMS = make_forms_by_noun(
     NamedToolkitRequest,
     "Named{}Form",
-    asked_field,
-    asked_kind,
+    make_field_entry,
+    make_kind_entry,
     "{} to compare, with what to call it.",
     HARDWARE_FORMS,
 )
@@ -130,7 +134,7 @@ if TYPE_CHECKING:
     HeldIn = ToolkitRequest
     NamedHeldIn = NamedToolkitRequest
 else:
-    HeldIn, NamedHeldIn = one_of(FORMS), one_of(NAMED_FORMS)
+    HeldIn, NamedHeldIn = join_forms(FORMS), join_forms(NAMED_FORMS)
 
 
 class RestrictionsForm(Form, RestrictionsPart):
@@ -173,14 +177,14 @@ class LoadsForm(Form):
 SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS)])
 
 
-def asked_loads(text: str | None) -> tuple[Load, ...] | None:
+def read_loads_in_address(text: str | None) -> tuple[Load, ...] | None:
     """Return the loads of an address, JSON as in a search; None where none are given."""
     if text is None:
         return None
-    return tuple(form.load() for form in of_address(SeveralLoads, "loads", text))
+    return tuple(form.load() for form in parse_from_address(SeveralLoads, "loads", text))
 
 
-@with_fields(OF_SEARCHES, LARGEST)
+@add_declared_fields(OF_SEARCHES, LARGEST)
 class SearchForm(Form):
     """What a search in one toolkit and a comparison of several have in common."""
 
@@ -197,27 +201,27 @@ class SearchForm(Form):
         default=None, description="of a drawn part in mm, for what flat jaws grip"
     )
 
-    def query(self, toolkit: Toolkit, most_segments: int) -> Query:
+    def to_query(self, toolkit: Toolkit, most_segments: int) -> Query:
         loads = tuple(form.load() for form in self.loads)
-        workpiece = self.workpiece.workpiece(most_segments)
-        program, height = (None, None) if self.program is None else self.program.passed(workpiece.solid)
+        workpiece = self.workpiece.to_workpiece(most_segments)
+        program, height = (None, None) if self.program is None else self.program.to_program(workpiece.solid)
         is_loaded = bool(loads) or (program is not None and program.forces is not None)
         return Query(
             workpiece,
             toolkit,
             self.types,
-            self.restrictions.restrictions(),
+            self.restrictions.to_restrictions(),
             read_asked_ranking(self.ranking, self.prefer, is_loaded, program is not None),
-            None if self.tolerance is None else self.tolerance.tolerance(),
+            None if self.tolerance is None else self.tolerance.to_tolerance(),
             loads,
             program,
             peg_height=height,
             thickness=self.thickness,
-            **given_in(self, OF_SEARCHES) | ({"listing": None} if toolkit.closes_at_once else {}),
+            **collect_given_values(self, OF_SEARCHES) | ({"listing": None} if toolkit.closes_at_once else {}),
         )
 
 
-@with_fields(OF_ONE, LARGEST)
+@add_declared_fields(OF_ONE, LARGEST)
 class JobForm(SearchForm):
     """A search for every fixture or only the best.
 
@@ -227,10 +231,10 @@ class JobForm(SearchForm):
     toolkit: HeldIn
     every: bool = Field(default=False, description="find all fixtures, even where there are over 200,000")
 
-    def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
+    def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """Return the query, which has no name."""
-        query = self.query(self.toolkit.toolkit(), most_segments)
-        return (("", evolve(query, **given_in(self, OF_ONE))),)
+        query = self.to_query(self.toolkit.to_toolkit(), most_segments)
+        return (("", evolve(query, **collect_given_values(self, OF_ONE))),)
 
 
 class ExploreForm(SearchForm):
@@ -238,17 +242,17 @@ class ExploreForm(SearchForm):
 
     toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 
-    def queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
+    def to_queries(self, most_segments: int) -> tuple[tuple[str, Query], ...]:
         """Return the queries, one for each toolkit, and what the toolkits are called."""
-        from workhold.files.toolkit_file import preset, preset_names
+        from workhold.files.toolkit_file import list_preset_names, load_preset
 
         if self.toolkits is not None:
             named: list[tuple[str, Toolkit, Tolerance | None]] = [
-                (form.title, form.toolkit(), None) for form in self.toolkits
+                (form.title, form.to_toolkit(), None) for form in self.toolkits
             ]
         else:
-            named = [(one.name, one.toolkit, one.tolerance) for one in map(preset, preset_names())]
-        asked = self.query(named[0][1], most_segments)
+            named = [(one.name, one.toolkit, one.tolerance) for one in map(load_preset, list_preset_names())]
+        asked = self.to_query(named[0][1], most_segments)
         return tuple(
             (
                 title,

@@ -21,7 +21,7 @@ from starlette.exceptions import HTTPException
 
 from workhold.web.origins import Origins
 
-__all__ = ["BASES", "Guard", "Hosts", "ServerLimits", "usual_memory"]
+__all__ = ["BASES", "Guard", "Hosts", "ServerLimits", "compute_usual_memory"]
 
 # Memory of a search in bytes; the least with which one can work; and the share of the machine's that all
 # searches may take.
@@ -78,7 +78,7 @@ class ServerLimits:
     client_connections: int = 128
 
 
-def usual_memory(searches: int) -> int:
+def compute_usual_memory(searches: int) -> int:
     """Return the bytes of address space for each of so many searches at the same time.
 
     It is 4 GiB, or less where the machine has less.
@@ -134,7 +134,7 @@ class Hosts:
         >>> Hosts().knows("localhost:8000"), Hosts().knows("evil.example"), Hosts().knows("[::1]:80")
         (True, False, True)
         """
-        name = host_name(host)
+        name = strip_port(host)
         if name in self.names:
             return True
         try:
@@ -144,7 +144,7 @@ class Hosts:
         return self.any_address
 
 
-def host_name(host: str) -> str:
+def strip_port(host: str) -> str:
     """Return a host without its port, in small letters."""
     if host.startswith("["):
         return host[1:].partition("]")[0].lower()
@@ -172,7 +172,7 @@ class Guard:
     arriving: Counter[str] = field(factory=Counter, init=False)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answers a request, or passes it on to the application."""
+        """Answer a request, or passes it on to the application."""
         if scope["type"] != "http":
             await self.app(scope, receive, send)
             return
@@ -185,21 +185,21 @@ class Guard:
                 more = [(name, value) for name, value in HEADERS.items() if name not in present]
                 if is_api and b"cache-control" not in present:
                     more.append((b"cache-control", b"no-store"))
-                more += self.origins.shown(headers) if is_api else []
+                more += self.origins.make_sharing_headers(headers) if is_api else []
                 message["headers"] = [*message["headers"], *more]
             await send(message)
 
-        refusal = self.refusal(scope, headers)
+        refusal = self.find_refusal(scope, headers)
         if refusal is not None:
             await answer(send_guarded, *refusal)
             return
         if is_api and self.origins.is_preflight(scope["method"], headers):
             # It brings no token: browsers send none before they have been let in.
-            may = self.origins.preflight(headers)
+            may = self.origins.answer_preflight(headers)
             await send_guarded({"type": "http.response.start", "status": 204, "headers": may})
             await send_guarded({"type": "http.response.body", "body": b""})
             return
-        if self.token is not None and not brings(self.token, headers):
+        if self.token is not None and not holds_token(self.token, headers):
             await ask_for_token(send_guarded, scope, self.token)
             return
         uploads = scope["method"] == "POST" and scope["path"] in UPLOADS
@@ -222,7 +222,7 @@ class Guard:
             self.arriving[client] -= uploads
             self.arriving += Counter()
 
-    def refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
+    def find_refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
         """Return status and sentence for a request that is not let through."""
         host = headers.get("host", "")
         if not self.hosts.knows(host):
@@ -243,11 +243,11 @@ class Guard:
             if not (length.isascii() and length.isdigit()):
                 return 400, "The length of the request is no number."
             if len(length) > 15 or int(length) > most:
-                return 413, too_large(most)
+                return 413, explain_too_large(most)
         return None
 
 
-def brings(token: str, headers: dict[str, str]) -> bool:
+def holds_token(token: str, headers: dict[str, str]) -> bool:
     """Return whether the headers of a request hold the secret, as a cookie or as a bearer's token."""
     cookies = (part.strip().partition("=") for part in headers.get("cookie", "").split(";"))
     offered = [value for name, _, value in cookies if name == COOKIE]
@@ -258,7 +258,7 @@ def brings(token: str, headers: dict[str, str]) -> bool:
 
 
 async def ask_for_token(send: Send, scope: Scope, token: str) -> None:
-    """Answers a request without the secret; if its address holds it, with a cookie and a redirect."""
+    """Answer a request without the secret; if its address holds it, with a cookie and a redirect."""
     query = parse_qs((scope.get("query_string") or b"").decode("latin-1"))
     offered = query.get("token", [""])[0]
     if scope["method"] not in ("GET", "HEAD") or not compare_digest(offered.encode(), token.encode()):
@@ -308,12 +308,12 @@ class Body:
             raise HTTPException(408, f"The request took longer than {self.seconds:g} s to arrive.") from None
         self.taken += len(message.get("body", b""))
         if self.taken > self.most:
-            raise HTTPException(413, too_large(self.most))
+            raise HTTPException(413, explain_too_large(self.most))
         self.is_whole = not message.get("more_body", False)
         return message
 
 
-def too_large(most: int) -> str:
+def explain_too_large(most: int) -> str:
     size = f"{most / 1e6:g} MB" if most >= 100_000 else f"{most} bytes"
     return f"The request is larger than {size}: send a drawing of the part's outline only."
 

@@ -17,16 +17,16 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.result import Result
 from workhold.model.seating import length
 from workhold.statics.judging import unfit as unfit_of
-from workhold.web.answers import explanation_answer, rows_answer
+from workhold.web.answers import describe_explanation, describe_rows
 from workhold.web.description import JobAddress, JobAnswer
 from workhold.web.families import PAPERS, FamilyForm, FamilyFound, FamilyPaper
 from workhold.web.forms import ExploreForm, JobForm, LoadsForm
 from workhold.web.guard import BASES
 from workhold.web.jobs import ServerJob
-from workhold.web.selection import Selection, angle_range
-from workhold.web.state import CheckedRoute, ServerState, address_of, at_desk, state_of
+from workhold.web.selection import Selection, read_angle_range
+from workhold.web.state import CheckedRoute, ServerState, get_client_address, run_at_desk, state_of
 
-__all__ = ["attachment", "found_job", "result_of_job", "router"]
+__all__ = ["make_attachment_header", "find_job", "get_job_result", "router"]
 
 router = APIRouter(route_class=CheckedRoute)
 
@@ -36,7 +36,7 @@ MOST_ROWS = 1_000
 EMPTY = FixtureTable.empty()
 
 
-def found_job(request: Request, name: str) -> ServerJob:
+def find_job(request: Request, name: str) -> ServerJob:
     """Find the job of a name; answers 404 when there is none."""
     job = state_of(request).jobs.get(name)
     if job is None:
@@ -44,7 +44,7 @@ def found_job(request: Request, name: str) -> ServerJob:
     return job
 
 
-def result_of_job(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
+def get_job_result(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
     """Return the result of a job.
 
     ``revision`` is the one that the caller has seen, None for any; ``when_over`` says whether only the whole
@@ -73,19 +73,19 @@ WhenLeft = Annotated[
 
 async def begin(request: Request, form: JobForm | ExploreForm | FamilyForm, when_left: str) -> JSONResponse:
     state = state_of(request)
-    address = address_of(request)
+    address = get_client_address(request)
     state.jobs.refuse_more(address)
-    queries = await at_desk(request, "check_job", (form, state.limits.segments))
+    queries = await run_at_desk(request, "check_job", (form, state.limits.segments))
     kind = {ExploreForm: "explore", FamilyForm: "family"}.get(type(form), "design")
     # A program's text is not kept with every job.
     asked = form.model_dump(exclude={"program": {"text": True, "tools": True}})
     sent = len(await request.body())
     job = state.jobs.submit(asked, queries, address, kind, sent, when_left == "cancel")
-    url = f"{base_of(request)}/jobs/{job.name}"
+    url = f"{get_base_address(request)}/jobs/{job.name}"
     return JSONResponse({"job": job.name, "url": url}, 202, {"Location": url})
 
 
-def base_of(request: Request) -> str:
+def get_base_address(request: Request) -> str:
     """Return the beginning of the addresses of the version that was asked."""
     return next(base for base in BASES if request.scope["path"].startswith(f"{base}/"))
 
@@ -110,7 +110,7 @@ async def explore(request: Request, form: ExploreForm, when_left: WhenLeft = "ke
 @router.get("/jobs/{name}", summary="State of a job", responses=STATE)
 async def state(request: Request, name: str) -> dict[str, Any]:
     """How far the job is, what it found, and what was asked for, without the text of a program."""
-    job = found_job(request, name)
+    job = find_job(request, name)
     return {**job.answer(), "request": job.request}
 
 
@@ -129,7 +129,7 @@ async def delete(request: Request, name: str) -> Response:
 )
 async def cancel(request: Request, name: str) -> dict[str, Any]:
     """Stops the job, whose state becomes ``cancelled`` within two seconds or so."""
-    job = found_job(request, name)
+    job = find_job(request, name)
     state_of(request).jobs.cancel(job)
     return job.answer()
 
@@ -158,8 +158,8 @@ async def events(
     browsers do by themselves, receives the state only if it has changed meanwhile. Every 15 seconds without
     an event a comment is sent.
     """
-    server, job = state_of(request), found_job(request, name)
-    seen = seen_version(last_event_id)
+    server, job = state_of(request), find_job(request, name)
+    seen = read_seen_version(last_event_id)
     if job.is_over and seen == job.version:
         return Response(status_code=204)
     if server.streams >= server.limits.streams:
@@ -169,10 +169,10 @@ async def events(
     return StreamingResponse(stream(server, job, seen), media_type="text/event-stream")
 
 
-def seen_version(text: str | None) -> int | None:
+def read_seen_version(text: str | None) -> int | None:
     """Read the version of a job in the id of an event; None for what was never one.
 
-    >>> seen_version("12"), seen_version("-1"), seen_version(None)
+    >>> read_seen_version("12"), read_seen_version("-1"), read_seen_version(None)
     (12, None, None)
     """
     return int(text) if text is not None and text.isascii() and text.isdigit() else None
@@ -219,30 +219,30 @@ async def fixtures(
     unfit: Annotated[bool, Query(description="also fixtures that no workshop can use")] = True,
 ) -> dict[str, Any]:
     """A page of the fixtures, even while the search runs; ranks count all, best first, from 1."""
-    job = found_job(request, name)
+    job = find_job(request, name)
     selection = Selection(
-        sort, descending, type, face, None if angle is None else angle_range(angle), together, unfit
+        sort, descending, type, face, None if angle is None else read_angle_range(angle), together, unfit
     )
     revision, result = job.revision, job.result
     if result is None:
         # So that what cannot be sorted by is refused even then.
-        selection.indices(EMPTY, job.asked.toolkit)
+        selection.choose_indices(EMPTY, job.asked.toolkit)
         return {"total": 0, "unfit": 0, "revision": revision, "rows": []}
-    found = await asyncio.to_thread(job.chosen, selection, result)
+    found = await asyncio.to_thread(job.choose_entries, selection, result)
     page = found.index[offset : offset + limit]
     table, like = result.table.take(page), found.like[offset : offset + limit].tolist()
     holds = [result.holds[index] for index in page.tolist()] if result.holds else []
     held = result.workpiece, result.toolkit, (page + 1).tolist(), holds
-    rows = await asyncio.to_thread(rows_answer, table, *held)
+    rows = await asyncio.to_thread(describe_rows, table, *held)
     bad = unfit_of(table.quality, result.query.tolerance).tolist()
     rows = [
-        row | {"like": more, "unfit": none, "caught": caught_in(result, row["rank"])}
+        row | {"like": more, "unfit": none, "caught": get_capture_range(result, row["rank"])}
         for row, more, none in zip(rows, like, bad, strict=True)
     ]
     return {"total": len(found.index), "unfit": found.unfit, "revision": revision, "rows": rows}
 
 
-def caught_in(result: Result, rank: int) -> dict[str, float | None] | None:
+def get_capture_range(result: Result, rank: int) -> dict[str, float | None] | None:
     """Return from how far open in mm a fixture catches the part; None where that is not known.
 
     The opening is null where the part never gets away.
@@ -255,21 +255,21 @@ def caught_in(result: Result, rank: int) -> dict[str, float | None] | None:
 @router.get("/jobs/{name}/explanation", summary="Why there is no fixture")
 async def explanation(request: Request, name: str) -> dict[str, Any]:
     """Why a search that is over found no fixture; this takes about as long as the search, and only once."""
-    job = found_job(request, name)
-    result = result_of_job(job, when_over=True)
+    job = find_job(request, name)
+    result = get_job_result(job, when_over=True)
     if len(result) or not result.complete:
         raise HTTPException(
             409, "There is nothing to explain: fixtures were found, or the search was not complete."
         )
-    return explanation_answer(await state_of(request).jobs.explain(job), result.workpiece, result.toolkit)
+    return describe_explanation(await state_of(request).jobs.explain(job), result.workpiece, result.toolkit)
 
 
 @router.post("/jobs/{name}/resist", summary="The fixtures that resist loads best")
 async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]:
     """The ten fixtures with the least load reaction, in N."""
-    job = found_job(request, name)
-    result, revision = result_of_job(job), job.revision
-    best = await at_desk(request, "resist", (result, form))
+    job = find_job(request, name)
+    result, revision = get_job_result(job), job.revision
+    best = await run_at_desk(request, "resist", (result, form))
     rows = [{"rank": rank, "load_reaction": reaction} for rank, reaction in best]
     return {"revision": revision, "best": rows}
 
@@ -277,28 +277,28 @@ async def resist(request: Request, name: str, form: LoadsForm) -> dict[str, Any]
 @router.get("/jobs/{name}/result.json", summary="The result file", response_class=Response)
 async def result_json(request: Request, name: str) -> Response:
     """The file that ``workhold design --out`` would write."""
-    from workhold.files.result.writer import result_text
+    from workhold.files.result.writer import write_result_text
 
-    return download(found_job(request, name), result_text, "json", "application/json")
+    return download(find_job(request, name), write_result_text, "json", "application/json")
 
 
 @router.get("/jobs/{name}/result.csv", summary="The fixtures as a table", response_class=Response)
 async def result_csv(request: Request, name: str) -> Response:
     """Comma-separated values, one line for each fixture."""
-    from workhold.files.result.fixture_text import result_csv_text
+    from workhold.files.result.fixture_text import write_result_csv
 
-    return download(found_job(request, name), result_csv_text, "csv", "text/csv; charset=utf-8")
+    return download(find_job(request, name), write_result_csv, "csv", "text/csv; charset=utf-8")
 
 
 def download(
     job: ServerJob, text: Callable[[Result], Iterator[str]], ending: str, content_type: str
 ) -> Response:
-    result = result_of_job(job, when_over=True)
-    headers = {"Content-Disposition": attachment(result.workpiece.name, ending)}
+    result = get_job_result(job, when_over=True)
+    headers = {"Content-Disposition": make_attachment_header(result.workpiece.name, ending)}
     return StreamingResponse(text(result), media_type=content_type, headers=headers)
 
 
-def attachment(name: str, ending: str) -> str:
+def make_attachment_header(name: str, ending: str) -> str:
     """Make the header that names a file to save."""
     plain = (
         "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in name)[:80].strip(".")
@@ -312,12 +312,12 @@ Setups = Annotated[
 ]
 
 
-def family_of_job(request: Request, name: str) -> FamilyFound:
+def get_job_family(request: Request, name: str) -> FamilyFound:
     """Return the family that a job has found.
 
     Raises HTTPException 409 when it is of something else, or there is nothing (yet).
     """
-    job = found_job(request, name)
+    job = find_job(request, name)
     if job.kind != "family":
         raise HTTPException(409, "This search is not of several parts: ask for a family.")
     if job.family is None:
@@ -337,7 +337,7 @@ async def submit_family(request: Request, form: FamilyForm, when_left: WhenLeft 
 @router.get("/jobs/{name}/family", summary="The curve of a family")
 async def family(request: Request, name: str) -> dict[str, Any]:
     """The least worst loss for each number of set-ups, and the parts that nothing holds."""
-    return family_of_job(request, name).answer()
+    return get_job_family(request, name).answer()
 
 
 @router.get("/jobs/{name}/family/{kind}", summary="The plan of a family on paper", response_class=Response)
@@ -350,12 +350,14 @@ async def paper(
     day: Annotated[date | None, Query(alias="date")] = None,
 ) -> Response:
     """The curve with a point marked, the sheets of its plan, or the family's file."""
-    found = family_of_job(request, name)
+    found = get_job_family(request, name)
     if not found.plans and kind != "plans.json":
         raise HTTPException(409, "No pattern of pegs holds any of the parts.")
-    content = await at_desk(
+    content = await run_at_desk(
         request, "family_paper", FamilyPaper(kind, found, setups, unit, day or date.today())
     )
     what, ending = kind.split(".")
-    headers = {} if ending == "svg" else {"Content-Disposition": attachment(f"family-{what}", ending)}
+    headers = (
+        {} if ending == "svg" else {"Content-Disposition": make_attachment_header(f"family-{what}", ending)}
+    )
     return Response(content, media_type=PAPERS[kind], headers=headers)

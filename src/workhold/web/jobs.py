@@ -23,10 +23,10 @@ from workhold.model.result import Result
 from workhold.model.search_report import Explanation
 from workhold.model.seating import Seating
 from workhold.seating.clamping import ByHand
-from workhold.web.answers import proof_answer
+from workhold.web.answers import describe_proof
 from workhold.web.families import FamilyFound
 from workhold.web.guard import ServerLimits
-from workhold.web.part_tasks import shape_size
+from workhold.web.part_tasks import estimate_shape_size
 from workhold.web.pool import BusyError, FailedError, Pool, PoolTask, StoppedError
 from workhold.web.searching import AskedQueries, Found
 from workhold.web.selection import Selection
@@ -112,14 +112,14 @@ class ServerJob:
     @property
     def size(self) -> int:
         """About how many bytes the job keeps: request, shape, fixtures, and orders of the list."""
-        kept = self.weight + shape_size(self.shape)
+        kept = self.weight + estimate_shape_size(self.shape)
         kept += sum(found.index.nbytes + found.like.nbytes for found in self.orders.values())
         if self.result is None:
             return kept
         table = self.result.table
         return kept + sum(int(getattr(table, a.name).nbytes) for a in table.__attrs_attrs__)
 
-    def changed(self) -> None:
+    def wake_watchers(self) -> None:
         """Wake those who watch the job."""
         self.version += 1
         for watcher in self.watchers:
@@ -148,23 +148,23 @@ class ServerJob:
             "ranking": None if result is None else list(result.query.rank_by),
             "complete": complete,
             "notes": list(map(str, self.notes)),
-            "proof": None if listed is None or listed.proof is None else proof_answer(listed.proof),
+            "proof": None if listed is None or listed.proof is None else describe_proof(listed.proof),
             "error": self.error,
             "revision": self.revision,
             "table": list(self.table) if self.compares else None,
         }
 
     def keep_seating(self, key: tuple[int, int], seating: Seating | ByHand) -> None:
-        """Keep the seating of a fixture, by revision and rank, and forgets the oldest of too many."""
+        """Keep the seating of a fixture, by revision and rank, and forget the oldest of too many."""
         while len(self.seatings) >= SEATINGS_KEPT:
             self.seatings.pop(next(iter(self.seatings)))
         self.seatings[key] = seating
 
-    def chosen(self, selection: Selection, result: Result) -> Entries:
+    def choose_entries(self, selection: Selection, result: Result) -> Entries:
         """Return the entries of the result that a selection chooses; the last few selections are kept."""
         key = (self.revision, selection)
         if key not in self.orders:
-            found = selection.entries(result)
+            found = selection.choose_entries(result)
             while len(self.orders) >= ORDERS_KEPT:
                 self.orders.pop(next(iter(self.orders)))
             self.orders[key] = found
@@ -233,10 +233,10 @@ class Jobs:
             await asyncio.sleep(self.limits.left_seconds - away)
 
     def begin(self, job: ServerJob) -> None:
-        """Notes that a worker has begun with a job."""
+        """Note that a worker has begun with a job."""
         job.began = monotonic()
         job.state = "running"
-        job.changed()
+        job.wake_watchers()
 
     async def run(self, job: ServerJob) -> None:
         payload: Any = job.asked
@@ -249,7 +249,7 @@ class Jobs:
             self.limits.seconds,
             job.address,
             stops_well=job.kind != "family",
-            report=lambda value: self.heard(job, value),
+            report=lambda value: self.apply_report(job, value),
             begun=lambda: self.begin(job),
         )
         leaving = asyncio.create_task(self.stop_when_left(job)) if job.stops_when_left else None
@@ -275,7 +275,7 @@ class Jobs:
             self.free_memory()
         job.ended = monotonic()
         job.used = max(job.used, job.ended)
-        job.changed()
+        job.wake_watchers()
         self.make_room()
 
     def keep(self, job: ServerJob, found: Found) -> None:
@@ -294,7 +294,7 @@ class Jobs:
         job.revision += 1
         job.orders.clear()
 
-    def heard(self, job: ServerJob, value: tuple[Any, ...]) -> None:
+    def apply_report(self, job: ServerJob, value: tuple[Any, ...]) -> None:
         """Apply a report of a worker."""
         match value:
             case ("progress", fraction, found):
@@ -310,7 +310,7 @@ class Jobs:
             case ("row", row):
                 job.table.append(row)
                 job.revision += 1
-        job.changed()
+        job.wake_watchers()
 
     async def explain(self, job: ServerJob) -> Explanation:
         """Explain why a job found no fixture; this is worked out once.
@@ -320,7 +320,7 @@ class Jobs:
         BusyError, FailedError, StoppedError
             When it could not be; it may be asked again.
         """
-        if job.explaining is None or (job.explaining.done() and not explained(job.explaining)):
+        if job.explaining is None or (job.explaining.done() and not ended_without_error(job.explaining)):
             task = PoolTask("explanation", job.asked, self.limits.seconds, job.address)
             job.explaining = asyncio.create_task(self.pool.run(task))
         return await asyncio.shield(job.explaining)
@@ -339,7 +339,7 @@ class Jobs:
             job.explaining.cancel()
         if not job.is_over:
             job.state = "cancelled"
-        job.changed()
+        job.wake_watchers()
         self.free_memory()
 
     def make_room(self) -> None:
@@ -372,13 +372,13 @@ class Jobs:
         await asyncio.sleep(FREE_AFTER)
         await asyncio.to_thread(return_memory)
 
-    async def sweep(self) -> None:
+    async def forget_jobs_regularly(self) -> None:
         """Forget jobs at intervals, for ever."""
         while True:
             await asyncio.sleep(min(max(self.limits.life_seconds / 10, 0.1), 30.0))
             self.make_room()
 
 
-def explained(task: asyncio.Task[Explanation]) -> bool:
+def ended_without_error(task: asyncio.Task[Explanation]) -> bool:
     """Return whether an explanation has ended without an error."""
     return not task.cancelled() and task.exception() is None

@@ -14,7 +14,7 @@ from attrs import frozen
 
 from workhold.errors import InputError
 
-__all__ = ["Origins", "checked_origin"]
+__all__ = ["Origins", "check_origin"]
 
 METHODS = "GET, HEAD, POST, DELETE"
 ASKED = "Authorization, Content-Type, Last-Event-ID, X-Filename"
@@ -32,7 +32,7 @@ class Origins:
 
     Parameters
     ----------
-    names : such as ``https://shop.example``, as :func:`checked_origin` writes them.
+    names : such as ``https://shop.example``, as :func:`check_origin` writes them.
     """
 
     names: Collection[str] = ()
@@ -49,8 +49,8 @@ class Origins:
         """Return whether a browser asks for a page of theirs what it may send."""
         return method == "OPTIONS" and "access-control-request-method" in headers and self.allows(headers)
 
-    def preflight(self, headers: Mapping[str, str]) -> Headers:
-        """Answers what a page of theirs may send."""
+    def answer_preflight(self, headers: Mapping[str, str]) -> Headers:
+        """Answer what a page of theirs may send."""
         may = [
             (b"access-control-allow-methods", METHODS.encode()),
             (b"access-control-allow-headers", ASKED.encode()),
@@ -61,7 +61,7 @@ class Origins:
             may.append((b"access-control-allow-private-network", b"true"))
         return may
 
-    def shown(self, headers: Mapping[str, str]) -> Headers:
+    def make_sharing_headers(self, headers: Mapping[str, str]) -> Headers:
         """Make the headers with which a browser hands an answer to a page of theirs."""
         if not self.names:
             return []
@@ -75,7 +75,7 @@ class Origins:
         ]
 
 
-def checked_origin(text: str) -> str:
+def check_origin(text: str) -> str:
     """Write an origin as browsers send it.
 
     Raises
@@ -83,7 +83,7 @@ def checked_origin(text: str) -> str:
     InputError
         For what is no origin of pages, and for ``*`` and ``null``, behind which every page may stand.
 
-    >>> checked_origin("HTTPS://Shop.example:443/")
+    >>> check_origin("HTTPS://Shop.example:443/")
     'https://shop.example'
     """
     try:

@@ -9,18 +9,18 @@ from fastapi import APIRouter, Depends, Query, Request
 from pydantic import Field
 from starlette.exceptions import HTTPException
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.reading import ReadingQuestion
-from workhold.files.declared_forms import with_fields
+from workhold.files.declared_forms import add_declared_fields
 from workhold.limits import MOST_LENGTH
 from workhold.version import __version__
-from workhold.web.answers import figures_answer
+from workhold.web.answers import describe_figures
 from workhold.web.fixture_tasks import has_step
-from workhold.web.job_routes import found_job
+from workhold.web.job_routes import find_job
 from workhold.web.part_tasks import ShapeOrder, Upload
 from workhold.web.program_forms import ReadProgramForm
-from workhold.web.request_forms import AddressForm, WorkpieceForm, asked_heights
-from workhold.web.state import CheckedRoute, at_desk, at_desk_while_heard, state_of
+from workhold.web.request_forms import AddressForm, WorkpieceForm, read_heights_in_address
+from workhold.web.state import CheckedRoute, run_at_desk, run_at_desk_while_connected, state_of
 
 __all__ = ["router"]
 
@@ -53,22 +53,22 @@ async def about(request: Request) -> dict[str, Any]:
 @router.get("/parts", summary="The parts that come with the program")
 async def parts() -> list[dict[str, str]]:
     """Names and descriptions of the built-in parts."""
-    from workhold.files.part.finding import builtin_parts
+    from workhold.files.part.finding import list_builtin_parts
 
-    return [{"name": part.name, "title": part.description} for part in builtin_parts()]
+    return [{"name": part.name, "title": part.description} for part in list_builtin_parts()]
 
 
 @router.get("/parts/{name}", summary="A part that comes with the program")
 async def part(request: Request, name: str) -> dict[str, Any]:
     """Loops, segments and faces of a built-in part."""
-    from workhold.files.part.finding import builtin_parts
+    from workhold.files.part.finding import list_builtin_parts
 
     state = state_of(request)
-    known = {part.name.lower(): part.name for part in builtin_parts()}.get(name.lower())
+    known = {part.name.lower(): part.name for part in list_builtin_parts()}.get(name.lower())
     if known is None:
         raise HTTPException(404, "No part of that name comes with the program.")
     if known not in state.builtin:
-        state.builtin[known] = await at_desk(request, "builtin_part", known)
+        state.builtin[known] = await run_at_desk(request, "builtin_part", known)
     return state.builtin[known]
 
 
@@ -79,10 +79,10 @@ FILE = {
     },
     "parameters": [{"in": "header", "name": "X-Filename", "required": False, "schema": {"type": "string"}}],
 }
-OF_READING = declarations_of(ReadingQuestion)
+OF_READING = list_declarations(ReadingQuestion)
 
 
-@with_fields(OF_READING, MOST_LENGTH)
+@add_declared_fields(OF_READING, MOST_LENGTH)
 class UploadForm(AddressForm):
     """How a file that is sent is to be read; lengths in mm."""
 
@@ -113,21 +113,21 @@ class UploadForm(AddressForm):
 OF_ALL_FILES = ("unit", "part_number", "layers", "join_tolerance")
 
 
-async def sent(request: Request, asked: Annotated[UploadForm, Query()]) -> Upload:
+async def collect_upload(request: Request, asked: Annotated[UploadForm, Query()]) -> Upload:
     """Collect a file that is sent, and the options of how to read it."""
     content = await request.body()
-    name = shown_name(request.headers.get("x-filename", ""))
+    name = clean_file_name(request.headers.get("x-filename", ""))
     given = asked.model_dump(exclude_none=True, exclude={"heights"})
     if not name.lower().endswith((".step", ".stp")):
         given = {key: value for key, value in given.items() if key in (*OF_ALL_FILES, "fit")}
     elif asked.heights is not None:
-        given["heights"] = asked_heights(asked.heights)
+        given["heights"] = read_heights_in_address(asked.heights)
     if name.lower().endswith(".json"):
         given.pop("fit", None)
     return Upload(content, name, state_of(request).limits.segments, given)
 
 
-Sent = Annotated[Upload, Depends(sent)]
+Sent = Annotated[Upload, Depends(collect_upload)]
 
 
 @router.post("/parts", summary="Read a part from a file", openapi_extra=FILE)
@@ -136,7 +136,7 @@ async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
 
     Its name is in the header X-Filename.
     """
-    answer: dict[str, Any] = await at_desk(request, "read_part", upload)
+    answer: dict[str, Any] = await run_at_desk(request, "read_part", upload)
     return answer
 
 
@@ -146,7 +146,7 @@ async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
 
     The file is sent as to read a part.
     """
-    answer: dict[str, Any] = await at_desk(request, "survey_part", upload)
+    answer: dict[str, Any] = await run_at_desk(request, "survey_part", upload)
     return answer
 
 
@@ -158,17 +158,17 @@ async def shape_part(
 
     The answer is how many triangles it is shown by. The job keeps the shape, not the file.
     """
-    content, name = await request.body(), shown_name(request.headers.get("x-filename", ""))
-    held = found_job(request, job)
+    content, name = await request.body(), clean_file_name(request.headers.get("x-filename", ""))
+    held = find_job(request, job)
     if held.kind != "design":
         raise HTTPException(409, "Only a search for fixtures shows the shape of its part: begin one.")
     part = held.asked.query.workpiece
-    held.shape = await at_desk(request, "shape", ShapeOrder(content, name, part))
+    held.shape = await run_at_desk(request, "shape", ShapeOrder(content, name, part))
     state_of(request).jobs.make_room()
     return {"triangles": len(held.shape.triangles)}
 
 
-def shown_name(header: str) -> str:
+def clean_file_name(header: str) -> str:
     """Clean a file's name for display: without folders and what cannot be printed."""
     name = unquote(header, errors="replace").replace("\\", "/").rpartition("/")[2]
     return "".join(letter for letter in name if letter.isprintable())[-LONGEST_NAME:].strip()
@@ -178,7 +178,7 @@ def shown_name(header: str) -> str:
 async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
     """The part, or what is wrong with it and where."""
     state = state_of(request)
-    answer: dict[str, Any] = await at_desk(request, "check_part", (form, state.limits.segments))
+    answer: dict[str, Any] = await run_at_desk(request, "check_part", (form, state.limits.segments))
     return answer
 
 
@@ -189,7 +189,7 @@ async def lesson(request: Request, form: WorkpieceForm) -> dict[str, Any]:
     Lengths are in mm, angles in radians.
     """
     payload = form, state_of(request).limits.segments
-    answer: dict[str, Any] = await at_desk_while_heard(request, "make_lesson", payload)
+    answer: dict[str, Any] = await run_at_desk_while_connected(request, "make_lesson", payload)
     return answer
 
 
@@ -200,36 +200,36 @@ async def program(request: Request, form: ReadProgramForm) -> dict[str, Any]:
     Paths are SVG path data in tenths of mm, y downward, by tool, kind and level of height. ``height`` and
     ``peg_height`` beside the program are those of the part's solid.
     """
-    answer: dict[str, Any] = await at_desk(request, "look_at_program", form)
+    answer: dict[str, Any] = await run_at_desk(request, "look_at_program", form)
     return answer
 
 
 @router.get("/toolkits", summary="The kinds of toolkits")
 async def toolkits() -> list[dict[str, Any]]:
     """The name of each kind, its fields, and usual values to begin with; lengths in mm."""
-    from workhold.web.toolkits import kinds_answer
+    from workhold.web.toolkits import describe_kinds
 
-    return kinds_answer()
+    return describe_kinds()
 
 
 @router.get("/questions", summary="What is asked of a search and of a sheet")
 async def questions() -> dict[str, list[dict[str, Any]]]:
     """The fields of each that the page shows, in mm and N, with what each means."""
-    from workhold.web.toolkits import questions_answer
+    from workhold.web.toolkits import describe_questions
 
-    return questions_answer()
+    return describe_questions()
 
 
 @router.get("/presets", summary="The toolkits that come with the program")
 async def presets() -> list[dict[str, Any]]:
     """Toolkits that people own, by name; lengths in mm."""
-    from workhold.files.toolkit_file import preset, preset_names
-    from workhold.web.toolkits import toolkit_answer
+    from workhold.files.toolkit_file import list_preset_names, load_preset
+    from workhold.web.toolkits import describe_toolkit
 
-    return [toolkit_answer(one) for one in map(preset, preset_names())]
+    return [describe_toolkit(one) for one in map(load_preset, list_preset_names())]
 
 
 @router.get("/figures", summary="The figures of quality")
 async def figures() -> list[dict[str, Any]]:
     """The name of each figure, its unit, and which way is better."""
-    return figures_answer()
+    return describe_figures()

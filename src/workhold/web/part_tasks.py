@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 __all__ = [
     "ShapeOrder",
     "Upload",
-    "builtin_part",
+    "describe_builtin_part",
     "check_part",
     "find_shape",
     "read_part",
-    "shape_size",
+    "estimate_shape_size",
     "survey_part",
 ]
 
@@ -79,44 +79,44 @@ class Upload:
 
 
 def check_part(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    """Check a part drawn by hand, and describes it for the page."""
-    from workhold.web.answers import part_answer
+    """Check a part drawn by hand, and describe it for the page."""
+    from workhold.web.answers import describe_part
 
     form, most_segments = payload
-    return part_answer(form.workpiece(most_segments))
+    return describe_part(form.to_workpiece(most_segments))
 
 
-def builtin_part(name: str, order: Order) -> dict[str, Any]:
+def describe_builtin_part(name: str, order: Order) -> dict[str, Any]:
     """Describe a built-in part; the name is known to exist."""
-    from workhold.files.part.finding import builtin_path
+    from workhold.files.part.finding import find_builtin_path
     from workhold.files.part.load import read_workpiece
-    from workhold.web.answers import part_answer
+    from workhold.web.answers import describe_part
 
-    path = builtin_path(name)
+    path = find_builtin_path(name)
     assert path is not None
-    return part_answer(read_workpiece(path).workpiece)
+    return describe_part(read_workpiece(path).workpiece)
 
 
 def read_part(upload: Upload, order: Order) -> dict[str, Any]:
     from workhold.files.part.load import read_workpiece
 
-    with sent_file(upload) as path:
+    with write_sent_file(upload) as path:
         loaded = read_workpiece(path, **upload.options, called=CALLED)
-        return uploaded_part(upload, path, loaded)
+        return describe_uploaded_part(upload, path, loaded)
 
 
 def survey_part(upload: Upload, order: Order) -> dict[str, Any]:
     """Describe what a file that was sent holds and leaves open, with the part if it can be read."""
-    from workhold.files.part.survey import survey
+    from workhold.files.part.survey import survey_part_file
 
-    with sent_file(upload) as path:
-        seen = survey(path, **upload.options, called=CALLED)
-        part = None if seen.loaded is None else uploaded_part(upload, path, seen.loaded)
-        return survey_answer(seen, part, without_path(seen.refusal, path))
+    with write_sent_file(upload) as path:
+        seen = survey_part_file(path, **upload.options, called=CALLED)
+        part = None if seen.loaded is None else describe_uploaded_part(upload, path, seen.loaded)
+        return describe_survey(seen, part, remove_path(seen.refusal, path))
 
 
 @contextmanager
-def sent_file(upload: Upload) -> Iterator[Path]:
+def write_sent_file(upload: Upload) -> Iterator[Path]:
     """Write a file that was sent for the duration of the block; errors are raised without its path."""
     ending = f".{upload.name.rpartition('.')[2].lower()}"
     with TemporaryDirectory(prefix="workhold-") as folder:
@@ -125,28 +125,28 @@ def sent_file(upload: Upload) -> Iterator[Path]:
         try:
             yield path
         except InputError as error:
-            raise InputError(without_path(str(error), path)) from error
+            raise InputError(remove_path(str(error), path)) from error
         except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
             raise InputError(
                 "The file is damaged, or holds what this program cannot read: save it anew."
             ) from error
 
 
-def without_path(sentence: str, path: Path) -> str:
+def remove_path(sentence: str, path: Path) -> str:
     """Remove the path of a file from a sentence, for its user knows it by another name."""
     return sentence.replace(f"{path.name}: ", "", 1)
 
 
-def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
+def describe_uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     """Describe a part for the page; where it has no name it gets that of the file that was sent.
 
     Refuses more segments than this server takes.
     """
-    from workhold.web.answers import part_answer
-    from workhold.web.request_forms import checked_part
+    from workhold.web.answers import describe_part
+    from workhold.web.request_forms import make_checked_part
 
     part, sent_as = loaded.workpiece, upload.name.rpartition(".")[0] or upload.name
-    checked_size = checked_part(
+    checked_size = make_checked_part(
         part.name,
         part.loops,  # type: ignore[arg-type]
         upload.most_segments,
@@ -157,7 +157,7 @@ def uploaded_part(upload: Upload, path: Path, loaded: Loaded) -> dict[str, Any]:
     if loaded.solids and name.endswith(f" of {path.stem}"):
         name = name.removesuffix(path.stem) + sent_as
     whole = evolve(checked_size, name=name or "part", outlines=part.outlines)
-    return part_answer(whole, loaded.remarks)
+    return describe_part(whole, loaded.remarks)
 
 
 @frozen(eq=False)
@@ -177,15 +177,15 @@ class ShapeOrder:
 
 
 def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
-    """Find the solid that gives the outline of a part, and makes a mesh of it.
+    """Find the solid that gives the outline of a part, and make a mesh of it.
 
     Refuses a file of another part, and a shape too large to keep.
     """
-    from workhold.files.step.part_shape import part_shape
+    from workhold.files.step.part_shape import make_part_shape
 
     try:
-        shape = part_shape(payload.content, payload.workpiece)
-        if shape_size(shape) > MOST_BYTES:
+        shape = make_part_shape(payload.content, payload.workpiece)
+        if estimate_shape_size(shape) > MOST_BYTES:
             raise InputError(
                 f"the shape of the part takes more than {MOST_BYTES // 1_000_000} MB to show: leave out "
                 "threads, letters and other small things when you save it."
@@ -195,14 +195,14 @@ def find_shape(payload: ShapeOrder, order: Order) -> PartShape:
     return shape
 
 
-def shape_size(shape: PartShape | None) -> int:
+def estimate_shape_size(shape: PartShape | None) -> int:
     """Return about how many bytes a shape takes."""
     if shape is None:
         return 0
     return shape.positions.nbytes + shape.normals.nbytes + shape.triangles.nbytes + len(shape.kept)
 
 
-def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
+def describe_strokes(chains: Iterable[Chain]) -> list[list[list[float]]]:
     """Describe chains as lists of x, y in mm and bulge, as many as are shown."""
     strokes, room = [], MOST_STROKES
     for chain in chains:
@@ -215,7 +215,7 @@ def strokes_answer(chains: Iterable[Chain]) -> list[list[list[float]]]:
     return strokes
 
 
-def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
+def describe_survey(seen: Survey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
     """Describe what a file holds and leaves open; strokes and outlines are chains of x, y in mm, bulge.
 
     ``heights`` is what other heights of the pegs offer of a solid, and ``solids`` are those of the file with
@@ -230,9 +230,9 @@ def survey_answer(seen: Survey, part: dict[str, Any] | None, refusal: str) -> di
         "asked": list(seen.asked),
         "size": None if seen.size is None else list(seen.size),
         "pixels": None if seen.pixels is None else list(seen.pixels),
-        "strokes": strokes_answer(seen.chains),
+        "strokes": describe_strokes(seen.chains),
         "layers": [
-            {"name": one.name, "hidden": one.hidden, "strokes": strokes_answer(one.chains)}
+            {"name": one.name, "hidden": one.hidden, "strokes": describe_strokes(one.chains)}
             for one in seen.layers[:MOST_LAYERS]
         ],
         "parts": [

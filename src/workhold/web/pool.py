@@ -23,7 +23,7 @@ from typing import Any
 from attrs import define, field
 
 from workhold.errors import InputError, WorkholdError
-from workhold.web.tasks import work
+from workhold.web.tasks import run_worker
 from workhold.web.worker import CANCEL, discard_folders
 
 __all__ = ["BusyError", "FailedError", "Pool", "PoolTask", "StoppedError"]
@@ -101,20 +101,20 @@ class PoolWorker:
     gone: asyncio.Event = field(factory=asyncio.Event)
 
     @classmethod
-    def started(cls, kind: str, memory_bytes: int) -> PoolWorker:
+    def start(cls, kind: str, memory_bytes: int) -> PoolWorker:
         """Start a process, and a thread of the server that receives its messages."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
-        process = context.Process(target=work, args=(theirs, kind, memory_bytes), daemon=True)
-        with deaf_to_interrupts():
+        process = context.Process(target=run_worker, args=(theirs, kind, memory_bytes), daemon=True)
+        with ignore_interrupts():
             process.start()
         theirs.close()
         worker = cls(process, ours)
         loop = asyncio.get_running_loop()
-        threading.Thread(target=worker.listen, args=(loop,), daemon=True).start()
+        threading.Thread(target=worker.receive_messages, args=(loop,), daemon=True).start()
         return worker
 
-    def listen(self, loop: asyncio.AbstractEventLoop) -> None:
+    def receive_messages(self, loop: asyncio.AbstractEventLoop) -> None:
         """Receive messages until the pipe ends; runs in a thread of its own."""
         try:
             while True:
@@ -133,7 +133,7 @@ class PoolWorker:
             await asyncio.to_thread(self.connection.send, message)
 
     async def end(self) -> None:
-        """End the process at once and closes its pipe."""
+        """End the process at once and close its pipe."""
         self.process.kill()
         await asyncio.to_thread(self.process.join, 5.0)
         with suppress(OSError):
@@ -142,7 +142,7 @@ class PoolWorker:
 
 
 @contextmanager
-def deaf_to_interrupts() -> Iterator[None]:
+def ignore_interrupts() -> Iterator[None]:
     """Make processes that are started within the block ignore Ctrl-C, which is for the server."""
     try:
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -186,7 +186,7 @@ class Pool:
         self.slots = [asyncio.create_task(self.keep(slot)) for slot in range(self.size)]
 
     async def close(self) -> None:
-        """End the workers and gives up the tasks that wait."""
+        """End the workers and give up the tasks that wait."""
         for slot in self.slots:
             slot.cancel()
         await asyncio.gather(*self.slots, return_exceptions=True)
@@ -248,8 +248,8 @@ class Pool:
             may, key=lambda task: (self.running[task.client], self.turns.get(task.client, 0)), default=None
         )
 
-    async def next_task(self) -> PoolTask:
-        """Wait for the next task, and counts a worker as its client's from then on."""
+    async def wait_for_task(self) -> PoolTask:
+        """Wait for the next task, and count a worker as its client's from then on."""
         while (task := self.turn()) is None:
             self.bell.clear()
             await self.bell.wait()
@@ -261,18 +261,18 @@ class Pool:
             self.turns.pop(next(iter(self.turns)))
         return task
 
-    def free(self, task: PoolTask) -> None:
-        """Notes that a worker is no longer its client's."""
+    def release_worker(self, task: PoolTask) -> None:
+        """Note that a worker is no longer its client's."""
         self.running[task.client] -= 1
         self.running += Counter()
         self.bell.set()
 
     async def keep(self, slot: int) -> None:
-        """Keep a worker in a slot and gives it tasks."""
+        """Keep a worker in a slot and give it tasks."""
         failed = 0
         while True:
-            worker = self.workers[slot] = PoolWorker.started(self.kind, self.memory_bytes)
-            if await first(worker.inbox.get(), worker.gone.wait()) is None:
+            worker = self.workers[slot] = PoolWorker.start(self.kind, self.memory_bytes)
+            if await wait_for_first(worker.inbox.get(), worker.gone.wait()) is None:
                 await worker.end()
                 failed += 1
                 if failed >= MOST_FAILED_STARTS:
@@ -289,27 +289,27 @@ class Pool:
     async def serve(self, worker: PoolWorker) -> None:
         """Give tasks to a worker until it has ended."""
         while not worker.gone.is_set():
-            task = await first(self.next_task(), worker.gone.wait())
+            task = await wait_for_first(self.wait_for_task(), worker.gone.wait())
             if task is None:
                 return
             if worker.gone.is_set():
-                self.free(task)
+                self.release_worker(task)
                 self.waiting.insert(0, task)
                 return
             self.busy += 1
             try:
-                await self.work(worker, task)
+                await self.run_task(worker, task)
             except asyncio.CancelledError:
                 task.settle(error=FailedError("The server was stopped."))
                 raise
             finally:
                 self.busy -= 1
-                self.free(task)
+                self.release_worker(task)
                 # Its outcome is its caller's now.
                 del task
 
-    async def work(self, worker: PoolWorker, task: PoolTask) -> None:
-        """Has a worker do a task; a worker that had to be ended is marked as gone."""
+    async def run_task(self, worker: PoolWorker, task: PoolTask) -> None:
+        """Have a worker do a task; a worker that had to be ended is marked as gone."""
         clock, number, is_asked = asyncio.get_running_loop().time, next(self.numbers), False
         if task.begun is not None:
             task.begun()
@@ -318,7 +318,7 @@ class Pool:
         late = FailedError(f"This took longer than {task.seconds:g} s and was stopped.")
         while True:
             waits = [worker.inbox.get(), worker.gone.wait()] + ([] if is_asked else [task.stop.wait()])
-            message = await first(*waits, timeout=max(end - clock(), 0.0))
+            message = await wait_for_first(*waits, timeout=max(end - clock(), 0.0))
             if message is not None:
                 kind, of, value = message
                 if of != number:
@@ -348,7 +348,7 @@ class Pool:
                 await worker.send((number, CANCEL))
 
 
-async def first(*waits: Any, timeout: float | None = None) -> Any:
+async def wait_for_first(*waits: Any, timeout: float | None = None) -> Any:
     """Wait until one of some coroutines is done or the time is up; return the first's value, else None."""
     tasks = [asyncio.ensure_future(wait) for wait in waits]
     try:

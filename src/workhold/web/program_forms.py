@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from attrs import asdict, evolve
 from pydantic import ConfigDict, Field
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.program import CuttingQuestion, ProgramQuestion, StockQuestion
 from workhold.errors import InputError
-from workhold.files.declared_forms import given_in, with_fields
-from workhold.files.result.hold_text import need_entry
+from workhold.files.declared_forms import add_declared_fields, collect_given_values
+from workhold.files.result.hold_text import make_need_entry
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
@@ -30,7 +30,7 @@ __all__ = ["ProgramForm", "ReadProgramForm", "read_sent_program"]
 
 # Characters; 100,000 lines have three million.
 MOST_TEXT, MOST_TABLE = 3_500_000, 400_000
-OF_PROGRAM = declarations_of(ProgramQuestion)
+OF_PROGRAM = list_declarations(ProgramQuestion)
 TABLES = (".toml", ".csv", ".tbl")
 Thick = Annotated[float, Field(gt=0, le=LARGEST)]
 Start = Annotated[list[Annotated[float, Field(ge=-LARGEST, le=LARGEST)]], Field(min_length=3, max_length=3)]
@@ -53,19 +53,19 @@ class ToolTableForm(Form):
     text: Annotated[str, Field(max_length=MOST_TABLE)]
 
 
-@with_fields(declarations_of(CuttingQuestion), LARGEST)
+@add_declared_fields(list_declarations(CuttingQuestion), LARGEST)
 class CuttingForm(Form):
     """How tools cut of which the table does not say it: a force in N, a power in kW, or a material."""
 
     material: Name | None = None
 
 
-@with_fields(declarations_of(StockQuestion), LARGEST)
+@add_declared_fields(list_declarations(StockQuestion), LARGEST)
 class StockForm(Form):
     """What the part is cut from: its outline or the block around it, with so much around and on top."""
 
 
-@with_fields(OF_PROGRAM, LARGEST)
+@add_declared_fields(OF_PROGRAM, LARGEST)
 class ProgramForm(Form):
     """A program (G-code) whose tools keep clear of all that holds the part; lengths in mm.
 
@@ -90,8 +90,9 @@ class ProgramForm(Form):
     thickness: Thick | None = None
     peg_height: Thick | None = None
 
-    def passed(self, solid: SolidOutline | None) -> tuple[Program, float | None]:
-        """The program that fixtures are to let pass, and up to which height in mm anything holds the part.
+    def to_program(self, solid: SolidOutline | None) -> tuple[Program, float | None]:
+        """Return the program that fixtures are to let pass, and up to which height in mm anything holds the
+        part.
 
         Parameters
         ----------
@@ -126,12 +127,12 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
     """Read a program that was sent; its errors name the files as their user does."""
     from workhold.files.program.reader import read_program_with_calls
 
-    with written(form) as (path, tools):
+    with write_program_files(form) as (path, tools):
         return read_program_with_calls(
             path,
             tools,
             thickness=thickness,
-            **given_in(form, OF_PROGRAM),
+            **collect_given_values(form, OF_PROGRAM),
             cutting=None if form.cutting is None else form.cutting.model_dump(),
             stock=None if form.stock is None else form.stock.model_dump(),
             called=CALLED,
@@ -139,7 +140,7 @@ def read_sent_program(form: ProgramForm, thickness: float | None) -> ReadProgram
 
 
 @contextmanager
-def written(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
+def write_program_files(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
     """Write a program and its table for the duration of the block."""
     with TemporaryDirectory(prefix="workhold-") as folder:
         path, tools = Path(folder) / "program.nc", None
@@ -153,12 +154,12 @@ def written(form: ProgramForm) -> Iterator[tuple[Path, Path | None]]:
         try:
             yield path, tools
         except InputError as error:
-            raise InputError(named(str(error), names)) from error
+            raise InputError(rename_files_in_sentence(str(error), names)) from error
         except (ArithmeticError, LookupError, ValueError, RecursionError) as error:
             raise InputError(f"{form.name} is damaged: post it anew.") from error
 
 
-def named(sentence: str, names: Mapping[str, str]) -> str:
+def rename_files_in_sentence(sentence: str, names: Mapping[str, str]) -> str:
     """Return a sentence with the names of files as their user knows them."""
     for path, name in names.items():
         sentence = sentence.replace(path, name)
@@ -171,7 +172,7 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     Heights are above the part's lower side. The paths are SVG path data in tenths of mm, y downward. Each has
     the place of its tool in their order, its kind, and for cutting moves its level of height from 0.
     """
-    from workhold.drawing.path_drawn import SHADES, heights_cut
+    from workhold.drawing.path_drawn import SHADES, find_heights_cut
     from workhold.model.program_figures import bound_tip, measure_tools
 
     form = question.program
@@ -183,7 +184,7 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
     program, figures = read.program, measure_tools(read.program)
     low, top = bound_tip(program.moves)
     last = dict(zip(program.moves.tool.tolist(), program.moves.line.tolist(), strict=True))
-    levels = heights_cut(program)
+    levels = find_heights_cut(program)
     return {
         "name": form.name,
         "lines": read.lines,
@@ -213,22 +214,22 @@ def look_at_program(question: ReadProgramForm, order: Order) -> dict[str, Any]:
         "levels": SHADES,
         "skipped": list(program.skipped),
         "notes": list(program.notes),
-        "paths": list(paths_answer(program)),
+        "paths": list(describe_paths(program)),
     }
 
 
-def paths_answer(program: Program) -> Iterator[dict[str, Any]]:
-    from workhold.drawing.path_drawn import PagePaths, moves_by_look
+def describe_paths(program: Program) -> Iterator[dict[str, Any]]:
+    from workhold.drawing.path_drawn import PagePaths, group_moves_by_look
     from workhold.drawing.scene import View
 
-    paths = PagePaths.of(program.moves, View(10.0, 0.0, 0.0))
-    for look, rows in moves_by_look(program):
-        d = paths.data(rows)
+    paths = PagePaths.from_moves(program.moves, View(10.0, 0.0, 0.0))
+    for look, rows in group_moves_by_look(program):
+        d = paths.make_path_data(rows)
         if d:
             yield {"place": look.place, "kind": look.kind, "level": look.level, "d": d}
 
 
-def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
+def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
     """Return where the tools of a result's program come nearest to a fixture; None where none does."""
     from workhold.statics.program_clearance import find_nearest_passing
 
@@ -236,15 +237,15 @@ def passing_answer(result: Any, index: int) -> dict[str, Any] | None:
     return None if near is None or not isfinite(near.distance) else asdict(near)
 
 
-def forces_answer(result: Any, index: int) -> dict[str, Any] | None:
-    """What the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
+def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
+    """Return what the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
     from workhold.statics.jaw_program import asked_words
     from workhold.statics.program_forces import find_cutting_need
 
     hold, program = (result[index].hold, result.query.program) if result.holds else (None, None)
     if hold is not None and hold.program_need is not None and program is not None:
         asked = hold.program_need
-        return {**need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
+        return {**make_need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
     need = find_cutting_need(result, index)
     if need is None:
         return None

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 from workhold.errors import InputError
-from workhold.files.declared_forms import with_fields
+from workhold.files.declared_forms import add_declared_fields
 from workhold.files.input_forms import TAGS
 from workhold.fixels.support_hardware import CLAMP, PADS
 from workhold.model.own_outlines import add_own_outlines
@@ -43,12 +43,12 @@ __all__ = [
     "SpatialLoadForm",
     "SupportsForm",
     "WorkpieceForm",
-    "asked_heights",
-    "asked_of",
+    "read_heights_in_address",
+    "read_form_in_address",
     "check_body",
-    "checked_part",
-    "of_address",
-    "sentence_of",
+    "make_checked_part",
+    "parse_from_address",
+    "explain_request_error",
 ]
 
 Asked = TypeVar("Asked")
@@ -105,15 +105,17 @@ class AddressForm(BaseModel):
     model_config = ConfigDict(allow_inf_nan=False)
 
 
-def of_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
+def parse_from_address(adapter: TypeAdapter[Asked], name: str, text: str) -> Asked:
     try:
         return adapter.validate_json(text)
     except ValidationError as error:
         first = error.errors(include_url=False, include_context=False)[0]
-        raise InputError(sentence_of({**first, "loc": ("query", name, *map(str, first["loc"]))})) from error
+        raise InputError(
+            explain_request_error({**first, "loc": ("query", name, *map(str, first["loc"]))})
+        ) from error
 
 
-def sentence_of(error: dict[str, Any]) -> str:
+def explain_request_error(error: dict[str, Any]) -> str:
     """Return one thing that pydantic finds wrong with a request, as a sentence."""
     loc = [str(part) for part in error.get("loc", ()) if part not in TAGS]
     if error.get("type") == "json_invalid":
@@ -134,7 +136,7 @@ def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
         data = json.loads(body)
     except (ValueError, RecursionError) as error:
         raise InputError("The request is not valid JSON: send one object.") from error
-    refuse_many(most_vertices_in(data), most_segments)
+    refuse_many(count_most_vertices(data), most_segments)
     if count_values(data) > MOST_VALUES:
         raise InputError(
             f"The request has more than {MOST_VALUES:,} values: send only what is described, and parts of "
@@ -144,7 +146,7 @@ def check_body(payload: tuple[type[Form], bytes, int], order: Order) -> None:
         form.model_validate(data)
     except ValidationError as error:
         first = next(iter(error.errors(include_url=False, include_context=False, include_input=False)))
-        raise InputError(sentence_of({**first, "loc": ("body", *first["loc"])})) from error
+        raise InputError(explain_request_error({**first, "loc": ("body", *first["loc"])})) from error
 
 
 def count_values(data: Any) -> int:
@@ -160,7 +162,7 @@ def count_values(data: Any) -> int:
     return count
 
 
-def most_vertices_in(data: Any) -> int:
+def count_most_vertices(data: Any) -> int:
     """Return how many vertices the largest part of a request has, as far as it has the shape of one."""
     if not isinstance(data, dict):
         return 0
@@ -213,20 +215,20 @@ class WorkpieceForm(Form):
     solid: SolidForm | None = None
     outlines: Annotated[dict[Name, OwnOutlineForm], Field(max_length=MOST_RANGES)] = Field(default={})
 
-    def workpiece(self, most_segments: int) -> Workpiece:
+    def to_workpiece(self, most_segments: int) -> Workpiece:
         """Return the part; refuse loops that cannot be used, and too many segments."""
         solid = None if self.solid is None else SolidOutline(**self.solid.model_dump())
-        workpiece = checked_part(self.name, self.loops, most_segments, self.departure, solid)
+        workpiece = make_checked_part(self.name, self.loops, most_segments, self.departure, solid)
         if not self.outlines:
             return workpiece
         refuse_many(sum(len(loop) for one in self.outlines.values() for loop in one.loops), most_segments)
         entries = {role: one.model_dump() for role, one in self.outlines.items()}
         heights = {role: (one.heights[0], one.heights[1]) for role, one in self.outlines.items()}
-        with numbers_too_large():
+        with explain_number_errors():
             return add_own_outlines(workpiece, entries, heights)
 
 
-def checked_part(
+def make_checked_part(
     name: str,
     loops: Sequence[Sequence[Sequence[float]]],
     most_segments: int,
@@ -238,7 +240,7 @@ def checked_part(
     Refuses more segments than this server takes.
     """
     refuse_many(sum(map(len, loops)), most_segments)
-    with numbers_too_large():
+    with explain_number_errors():
         return Workpiece.from_loops(name, loops, departure=departure, solid=solid)
 
 
@@ -251,7 +253,7 @@ def refuse_many(count: int, most: int) -> None:
 
 
 @contextmanager
-def numbers_too_large() -> Iterator[None]:
+def explain_number_errors() -> Iterator[None]:
     """Say of numbers with which arithmetic fails that they are too large or too small."""
     try:
         yield
@@ -266,14 +268,16 @@ def numbers_too_large() -> Iterator[None]:
 SeveralHeights = TypeAdapter(Annotated[dict[Name, Point], Field(max_length=MOST_RANGES)])
 
 
-def asked_heights(text: str | None) -> dict[str, tuple[float, float]] | None:
+def read_heights_in_address(text: str | None) -> dict[str, tuple[float, float]] | None:
     """Return the heights of carriers in an address, JSON by role in mm; None where none are given.
 
     Refuses heights of which the lower does not come first.
     """
     if text is None:
         return None
-    found = {role: (low, high) for role, (low, high) in of_address(SeveralHeights, "heights", text).items()}
+    found = {
+        role: (low, high) for role, (low, high) in parse_from_address(SeveralHeights, "heights", text).items()
+    }
     for role, (low, high) in found.items():
         if not (low < high and high > 0.0):
             raise InputError(
@@ -302,7 +306,7 @@ class SpatialLoadForm(Form):
         return SpatialLoad(**self.model_dump())
 
 
-@with_fields(OF_HARDWARE, LARGEST)
+@add_declared_fields(OF_HARDWARE, LARGEST)
 class SupportsForm(Form):
     """What supports and the clamp on top are, and what acts on the part.
 
@@ -339,6 +343,6 @@ class FirstSideForm(Form):
     cut: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
 
 
-def asked_of(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
+def read_form_in_address(form: type[AskedForm], name: str, text: str | None) -> AskedForm | None:
     """Return a value of an address that is JSON of a form; None where none is given."""
-    return None if text is None else of_address(TypeAdapter(form), name, text)
+    return None if text is None else parse_from_address(TypeAdapter(form), name, text)

@@ -21,7 +21,7 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import Many, Note
 from workhold.model.query import Query
 from workhold.model.result import Result
-from workhold.web.answers import arrangements_answer
+from workhold.web.answers import describe_arrangements
 from workhold.web.worker import Order
 
 __all__ = ["FIRST", "AskedQueries", "Found", "NamedQuery", "search"]
@@ -59,10 +59,10 @@ class AskedQueries:
     arrangements: list[dict[str, str]]
 
     @classmethod
-    def of(cls, queries: tuple[NamedQuery, ...]) -> AskedQueries:
+    def from_queries(cls, queries: tuple[NamedQuery, ...]) -> AskedQueries:
         toolkit = queries[0][1].toolkit
         sealed = pickle.dumps(queries, pickle.HIGHEST_PROTOCOL)
-        return cls(sealed, len(queries), toolkit, arrangements_answer(toolkit))
+        return cls(sealed, len(queries), toolkit, describe_arrangements(toolkit))
 
     @property
     def queries(self) -> tuple[NamedQuery, ...]:
@@ -85,14 +85,15 @@ class Found:
 
 
 def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
-    """Searches; reports are ("progress", fraction, found), ("preview", result) and ("first", result).
+    """Return the searches; reports are ("progress", fraction, found), ("preview", result) and ("first",
+    result).
 
     Results that are reported are of the query as it was asked.
 
     A first result has the best fixtures of all, in their order. Of very many fixtures no more than the best
     are sought, unless every one is asked for.
     """
-    from workhold.limits import thread_count
+    from workhold.limits import choose_thread_count
     from workhold.search.design import answer
     from workhold.search.estimate import ask_for_best_where_many
 
@@ -104,7 +105,7 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
 
     first = None
     if query.best is None and query.seating is None:
-        first = best_of(query, order, report)
+        first = find_best(query, order, report)
         if order.cancel.is_set() or (first.complete and not len(first)):
             return Found(evolve(first, query=query, complete=first.complete and not len(first)), 0)
     known = first if first is not None and first.complete else None
@@ -112,8 +113,8 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
         report("first", known)
     notes: tuple[Note, ...] = ()
     if first is not None and not every:
-        with soon_enough(order) as enough:
-            query, about = ask_for_best_where_many(query, thread_count(None), enough)
+        with limit_time(order) as enough:
+            query, about = ask_for_best_where_many(query, choose_thread_count(None), enough)
         if query.best is not None:
             notes = (Many(about or 0, query.best),)
     begun = 0.0 if first is None else SHARE
@@ -124,7 +125,7 @@ def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
         preview=None if known is not None else lambda result: report("preview", result),
     )
     if known is not None and not result.complete:
-        result = with_best_first(result, known)
+        result = put_best_first(result, known)
     left_out = max(len(result) - most, 0)
     if left_out:
         result = result.part(slice(0, most))
@@ -151,11 +152,11 @@ class Reporter:
             self.order.report(("progress", self.begin + self.share * fraction, max(found, self.least)))
 
 
-def best_of(query: Query, order: Order, report: Callable[[str, Result], None]) -> Result:
+def find_best(query: Query, order: Order, report: Callable[[str, Result], None]) -> Result:
     """Return the best fixtures of a query; incomplete where that takes long, or the order is cancelled."""
     from workhold.search.design import answer
 
-    with soon_enough(order) as enough:
+    with limit_time(order) as enough:
         return answer(
             evolve(query, best=FIRST),
             progress=Reporter(order, 0.0, SHARE),
@@ -165,8 +166,8 @@ def best_of(query: Query, order: Order, report: Callable[[str, Result], None]) -
 
 
 @contextmanager
-def soon_enough(order: Order) -> Iterator[Event]:
-    """An event that is set when the order is cancelled, or a part of its time has passed."""
+def limit_time(order: Order) -> Iterator[Event]:
+    """Yield an event that is set when the order is cancelled, or a part of its time has passed."""
     enough, done = Event(), Event()
     seconds = min(MOST_SECONDS, MOST_SHARE * order.seconds)
 
@@ -185,7 +186,7 @@ def soon_enough(order: Order) -> Iterator[Event]:
         watching.join()
 
 
-def with_best_first(result: Result, best: Result) -> Result:
+def put_best_first(result: Result, best: Result) -> Result:
     """Return a search that was stopped, with the best of all before what else it found.
 
     It is not complete all the same.

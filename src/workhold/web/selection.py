@@ -8,14 +8,14 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
-from workhold.listing.identity import Entries, first_of_each, near_duplicates
+from workhold.listing.identity import Entries, find_first_of_each, number_near_duplicates
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import FIGURES, find_figure_number, select_figure_column
 from workhold.model.requirements import lie_in_angle_ranges
 from workhold.model.result import Result
 from workhold.statics.judging import unfit
 
-__all__ = ["Selection", "angle_range"]
+__all__ = ["Selection", "read_angle_range"]
 
 
 @frozen
@@ -42,21 +42,21 @@ class Selection:
     together: bool = False
     unfit: bool = True
 
-    def entries(self, result: Result) -> Entries:
+    def choose_entries(self, result: Result) -> Entries:
         """Choose fixtures of a result, in order, each with how many that are like it are left out."""
-        found = self.indices(result.table, result.toolkit)
+        found = self.choose_indices(result.table, result.toolkit)
         chosen, bad = found, unfit(result.table.quality, result.query.tolerance)
         if not (self.unfit or bad.all()):
             chosen = found[~bad[found]]
         like = np.zeros(len(chosen), np.int64)
         if self.together:
-            first, like = first_of_each(
-                near_duplicates(result.table, result.workpiece, result.toolkit)[chosen]
+            first, like = find_first_of_each(
+                number_near_duplicates(result.table, result.workpiece, result.toolkit)[chosen]
             )
             chosen = chosen[first]
         return Entries(chosen, like, int(bad[found].sum()) if not (self.unfit or bad.all()) else 0)
 
-    def indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
+    def choose_indices(self, table: FixtureTable, toolkit: Toolkit) -> NDArray[np.intp]:
         """Return the indices of the chosen fixtures of a table, in order.
 
         Raises
@@ -89,7 +89,7 @@ class Selection:
         return np.asarray(found[np.argsort(keys, kind="stable")])
 
 
-def angle_range(text: str) -> tuple[float, float]:
+def read_angle_range(text: str) -> tuple[float, float]:
     """Read a range of angles in degrees such as ``-10..10``."""
     low, dots, high = text.partition("..")
     try:

@@ -50,7 +50,7 @@ class PatientProtocol(H11Protocol):
     peer: str = ""
 
     def connection_made(self, transport: Any) -> None:
-        """Counts a connection, and closes one too many."""
+        """Count a connection, and close one too many."""
         super().connection_made(transport)
         self.peer = self.client[0] if self.client else ""
         self.open_connections[self.peer] += 1
@@ -65,7 +65,7 @@ class PatientProtocol(H11Protocol):
         self.watch()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Counts a connection no longer."""
+        """Count a connection no longer."""
         if self.header_timer is not None:
             self.header_timer.cancel()
         self.open_connections[self.peer] -= 1
@@ -152,7 +152,7 @@ def run_server(
     token : a secret that every request must bring, or None.
     listening : called with the page's address once it is there.
     prepare : called before the first worker is started, when the address is known to be free.
-    origins : of other sites' pages that may use it, as ``web.origins.checked_origin`` writes them.
+    origins : of other sites' pages that may use it, as ``web.origins.check_origin`` writes them.
 
     Raises
     ------
@@ -160,10 +160,10 @@ def run_server(
         When nothing can listen there.
     """
     listener = bound_socket(host, port)
-    shown = f"http://{address_words(host)}:{listener.getsockname()[1]}/"
+    shown = f"http://{format_host(host)}:{listener.getsockname()[1]}/"
     if token is not None:
         shown += f"?token={token}"
-    hosts, allowed = hosts_of(host, more_hosts), Origins(frozenset(origins))
+    hosts, allowed = list_hosts(host, more_hosts), Origins(frozenset(origins))
     server = make_server(limits, hosts, partial(listening, shown), proxies, token, allowed)
     try:
         prepare()
@@ -250,14 +250,14 @@ def is_for_others(host: str) -> bool:
         return host.lower() != "localhost"
 
 
-def hosts_of(host: str, more: Collection[str]) -> Hosts:
+def list_hosts(host: str, more: Collection[str]) -> Hosts:
     everywhere = is_everywhere(host)
     names = {*Hosts().names, *(name.lower() for name in more)}
     names.add(socket.gethostname().lower() if everywhere else host.lower())
     return Hosts(frozenset(names), any_address=everywhere)
 
 
-def address_words(host: str) -> str:
+def format_host(host: str) -> str:
     """Write a host as it stands in an address that can be opened."""
     if is_everywhere(host):
         return "127.0.0.1"

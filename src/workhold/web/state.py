@@ -23,7 +23,14 @@ from workhold.web.jobs import Jobs
 from workhold.web.pool import Pool, PoolTask, StoppedError
 from workhold.web.request_forms import Form
 
-__all__ = ["CheckedRoute", "ServerState", "address_of", "at_desk", "at_desk_while_heard", "state_of"]
+__all__ = [
+    "CheckedRoute",
+    "ServerState",
+    "get_client_address",
+    "run_at_desk",
+    "run_at_desk_while_connected",
+    "state_of",
+]
 
 TYPES = {
     "html": "text/html; charset=utf-8",
@@ -51,16 +58,16 @@ class StaticFile:
     tag: str
 
 
-def static_files() -> dict[str, StaticFile]:
+def read_static_files() -> dict[str, StaticFile]:
     """Read the files of the page, by their paths below ``static``, such as ``space/orbit.js``."""
-    return dict(found(files("workhold.web") / "static", ""))
+    return dict(read_files_below(files("workhold.web") / "static", ""))
 
 
-def found(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
+def read_files_below(folder: Traversable, prefix: str) -> Iterator[tuple[str, StaticFile]]:
     for entry in folder.iterdir():
         kind = TYPES.get(entry.name.rpartition(".")[2].lower())
         if entry.is_dir():
-            yield from found(entry, f"{prefix}{entry.name}/")
+            yield from read_files_below(entry, f"{prefix}{entry.name}/")
         elif kind is not None:
             content = entry.read_bytes()
             yield prefix + entry.name, StaticFile(content, kind, f'"{sha256(content).hexdigest()[:20]}"')
@@ -80,7 +87,7 @@ class ServerState:
     searchers: Pool = field(init=False)
     desks: Pool = field(init=False)
     jobs: Jobs = field(init=False)
-    files: dict[str, StaticFile] = field(factory=static_files, init=False)
+    files: dict[str, StaticFile] = field(factory=read_static_files, init=False)
     builtin: dict[str, dict[str, Any]] = field(factory=dict, init=False)
     streams: int = field(default=0, init=False)
     is_closing: asyncio.Event = field(factory=asyncio.Event, init=False)
@@ -93,10 +100,10 @@ class ServerState:
 
     @asynccontextmanager
     async def open(self) -> AsyncIterator[None]:
-        """Runs the workers while the block does."""
+        """Run the workers while the block does."""
         self.searchers.open()
         self.desks.open()
-        sweeper = asyncio.create_task(self.jobs.sweep())
+        sweeper = asyncio.create_task(self.jobs.forget_jobs_regularly())
         try:
             yield
         finally:
@@ -117,30 +124,30 @@ def state_of(request: Request) -> ServerState:
     return state
 
 
-def address_of(request: Request) -> str:
+def get_client_address(request: Request) -> str:
     return "" if request.client is None else request.client.host
 
 
-async def at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
-    """Has a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
+async def run_at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
+    """Have a worker do something quick; see :meth:`workhold.web.pool.Pool.run` for what it raises.
 
     It may take ``seconds``, if not as long as what is quick.
     """
     state = state_of(request)
     return await state.desks.run(
-        PoolTask(name, payload, seconds or state.limits.desk_seconds, address_of(request))
+        PoolTask(name, payload, seconds or state.limits.desk_seconds, get_client_address(request))
     )
 
 
-async def at_desk_while_heard(request: Request, name: str, payload: Any) -> Any:
-    """Has a worker do something quick, and asks it to stop when the client hangs up.
+async def run_at_desk_while_connected(request: Request, name: str, payload: Any) -> Any:
+    """Have a worker do something quick, and ask it to stop when the client hangs up.
 
     The task must end by itself when asked to stop. Raises StoppedError when the client is gone; nobody
     receives it.
     """
     state = state_of(request)
-    task = PoolTask(name, payload, state.limits.desk_seconds, address_of(request), stops_well=True)
-    running, gone = asyncio.create_task(state.desks.run(task)), asyncio.create_task(hung_up(request))
+    task = PoolTask(name, payload, state.limits.desk_seconds, get_client_address(request), stops_well=True)
+    running, gone = asyncio.create_task(state.desks.run(task)), asyncio.create_task(wait_for_hang_up(request))
     try:
         await asyncio.wait((running, gone), return_when=asyncio.FIRST_COMPLETED)
         if not running.done():
@@ -165,24 +172,24 @@ class CheckedRoute(APIRoute):
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
         """Return what answers a request of this route."""
-        handler, form = super().get_route_handler(), self.form()
+        handler, form = super().get_route_handler(), self.find_form()
 
         async def checked(request: Request) -> Response:
             if form is not None:
                 body = await request.body()
                 if len(body) > AT_ONCE:
-                    await at_desk(request, "check_body", (form, body, state_of(request).limits.segments))
+                    await run_at_desk(request, "check_body", (form, body, state_of(request).limits.segments))
             return await handler(request)
 
         return checked
 
-    def form(self) -> type[Form] | None:
+    def find_form(self) -> type[Form] | None:
         """Return the shape of its requests; None where they have no body, or bytes of a file."""
         kinds = get_type_hints(self.endpoint).values()
         return next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Form)), None)
 
 
-async def hung_up(request: Request) -> None:
+async def wait_for_hang_up(request: Request) -> None:
     """Wait until a client whose request has come whole is gone."""
     while (await request.receive())["type"] != "http.disconnect":
         pass

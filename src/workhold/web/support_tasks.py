@@ -23,11 +23,11 @@ from workhold.model.query import Query
 from workhold.model.requirements import make_zone
 from workhold.model.support_bodies import list_bodies_on_supports, size_supported_bodies
 from workhold.model.support_triples import ChosenSupports, Supports, Triple, recounted
-from workhold.units import unit_named
+from workhold.units import find_unit
 from workhold.web.request_forms import OF_HARDWARE, SupportsForm
 from workhold.web.worker import Order
 
-__all__ = ["SupportsOrder", "chosen_supports", "find_supports"]
+__all__ = ["SupportsOrder", "choose_supports", "find_supports"]
 
 # What keeps pads and the clamp off places, as the page calls it.
 KEEP_OFF = ('"Keep pads off"', '"Keep the clamp off"')
@@ -52,11 +52,11 @@ class SupportsOrder:
 
 
 def find_supports(payload: SupportsOrder, order: Order) -> dict[str, Any]:
-    """Find the best sets of three supports, and describes them with what shows from the side."""
-    return supports_answer(found_supports(payload), payload.form.unit)
+    """Find the best sets of three supports, and describe them with what shows from the side."""
+    return describe_supports(find_asked_supports(payload), payload.form.unit)
 
 
-def found_supports(asked: SupportsOrder) -> Supports:
+def find_asked_supports(asked: SupportsOrder) -> Supports:
     from workhold.supports.asking import make_request
     from workhold.supports.listing import supports_of
 
@@ -70,16 +70,16 @@ def found_supports(asked: SupportsOrder) -> Supports:
     return supports_of(asked.fixture, asked.query, request, loads, form.jaw_force, form.best)
 
 
-def chosen_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
-    """Find the supports that are asked for, and chooses the set of a number from 1; None where none hold.
+def choose_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
+    """Find the supports that are asked for, and choose the set of a number from 1; None where none hold.
 
     Refuses a number of which there is no set.
     """
-    found = found_supports(asked)
+    found = find_asked_supports(asked)
     return ChosenSupports.of(found, number) if found.triples else None
 
 
-def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
+def describe_supports(found: Supports, unit: str) -> dict[str, Any]:
     """Describe the best sets; places are in mm in the toolkit's frame.
 
     ``positions`` is how many holes may hold a support, ``count`` how many sets there are, null where not all
@@ -99,8 +99,8 @@ def supports_answer(found: Supports, unit: str) -> dict[str, Any]:
         "count": found.count,
         "bands": request.peg_bands(len(found.fixture.pegs)).tolist(),
         "sets": [set_answer(found, triple) for triple in listed],
-        "boxes": [list(boxes_of(found, triple, sizes)) for triple in listed],
-        "notes": notes_of(found, unit),
+        "boxes": [list(list_boxes(found, triple, sizes)) for triple in listed],
+        "notes": list_support_notes(found, unit),
     }
 
 
@@ -119,13 +119,13 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         return [float(value) for value in fixture.pose.apply(x, y)]
 
     return {
-        "holes": standing_holes(found, triple)[1],
-        "carriers": found.query.toolkit.carrier_numbers(pad.carrier for pad in triple.supports),
+        "holes": list_standing_holes(found, triple)[1],
+        "carriers": found.query.toolkit.find_carrier_numbers(pad.carrier for pad in triple.supports),
         "pads": [placed(pad.x, pad.y) for pad in triple.supports],
         "at": placed(*clamp.at),
         "clamped_height": found.request.clamped_height(clamp.at),
         "at_part": list(clamp.at),
-        "nearest": placed(*nearest_of_border(corners, np.array(clamp.at))),
+        "nearest": placed(*find_nearest_on_border(corners, np.array(clamp.at))),
         "clamp_force": clamp.clamp_needed if loaded else None,
         "support_force": clamp.support_force if loaded else None,
         "arm": clamp.arm,
@@ -134,11 +134,11 @@ def set_answer(found: Supports, triple: Triple) -> dict[str, Any]:
         "overhang": triple.overhang,
         "travel": triple.travel if moves else None,
         "marginal": triple.marginal,
-        "built": built_answer(found, triple),
+        "built": describe_built_holes(found, triple),
     }
 
 
-def standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
+def list_standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str]]:
     """Return the holes of pegs, and of supports, as the page names them: in the middle of the plate."""
     query = found.query
     move = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
@@ -147,8 +147,8 @@ def standing_holes(found: Supports, triple: Triple) -> tuple[list[str], list[str
     return pegs, [pad.hole for pad in pads]
 
 
-def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
-    """Names the holes in which a set is built where the page names others; None where it does not."""
+def describe_built_holes(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
+    """Name the holes in which a set is built where the page names others; None where it does not."""
     query = found.query
     start = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
     try:
@@ -157,12 +157,12 @@ def built_answer(found: Supports, triple: Triple) -> dict[str, list[str]] | None
         return None
     pegs = [peg.hole for peg in anew.fixture.pegs]
     pads = [pad.hole for pad in anew.supports]
-    if (pegs, pads) == standing_holes(found, triple):
+    if (pegs, pads) == list_standing_holes(found, triple):
         return None
     return {"pegs": pegs, "supports": pads}
 
 
-def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, float]:
+def find_nearest_on_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, float]:
     """Return the point of a triangle's border (3, 2) that is nearest to a point (2,)."""
     starts, ways = corners, np.roll(corners, -1, axis=0) - corners
     shares = ((point - starts) * ways).sum(axis=1) / (ways**2).sum(axis=1)
@@ -171,15 +171,15 @@ def nearest_of_border(corners: np.ndarray, point: np.ndarray) -> tuple[float, fl
     return float(x), float(y)
 
 
-def notes_of(found: Supports, unit: str) -> list[str]:
+def list_support_notes(found: Supports, unit: str) -> list[str]:
     from workhold.supports.words import explain_no_set, write_listing_notes
 
-    given, listed = unit_named(unit), found.triples
+    given, listed = find_unit(unit), found.triples
     reasons = [] if listed else [explain_no_set(found, given)]
     return reasons + write_listing_notes(found, listed, given, KEEP_OFF)
 
 
-def boxes_of(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
+def list_boxes(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
     """List the boxes of all bodies of a fixture with a set of supports; none where pegs have no body."""
     try:
         bodies = list_bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)

@@ -16,12 +16,12 @@ from workhold.model.search_report import Explanation
 from workhold.model.workpiece import Workpiece
 from workhold.web.families import find_family, make_family_paper
 from workhold.web.fixture_tasks import close, find_seating, make_paper
-from workhold.web.part_tasks import builtin_part, check_part, find_shape, read_part, survey_part
+from workhold.web.part_tasks import check_part, describe_builtin_part, find_shape, read_part, survey_part
 from workhold.web.program_forms import look_at_program
 from workhold.web.request_forms import check_body
 from workhold.web.searching import AskedQueries, search
 from workhold.web.support_tasks import find_supports
-from workhold.web.worker import Order, Tasks, worker_main
+from workhold.web.worker import Order, Tasks, run_tasks
 
 if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from workhold.web.forms import ExploreForm, JobForm, LoadsForm
     from workhold.web.request_forms import WorkpieceForm
 
-__all__ = ["TASKS", "warm_up", "work"]
+__all__ = ["TASKS", "warm_up", "run_worker"]
 
 # Best fixtures listed when loads are asked for over all of them.
 MOST_RESISTING = 10
 
 
 def warm_up(kind: str) -> None:
-    """Loads, and on a first run compiles, what workers of a kind need: "search" or "desk"."""
+    """Load, and on a first run compile, what workers of a kind need: "search" or "desk"."""
     from workhold.search.design import design
 
     if kind == "search":
@@ -53,10 +53,10 @@ def warm_up(kind: str) -> None:
     import workhold.web.forms  # noqa: F401
 
 
-def explore(payload: AskedQueries, order: Order) -> None:
-    """Answers one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
-    from workhold.files.result.writer import toolkit_fields
-    from workhold.presenting.figure_words import is_edgeless, no_edge
+def explore_toolkits(payload: AskedQueries, order: Order) -> None:
+    """Answer one query after the other; reports are ("row", row) and ("progress", fraction, found)."""
+    from workhold.files.result.writer import make_toolkit_fields
+    from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
     from workhold.search.design import explore
 
     total, queries = 0, payload.queries
@@ -64,12 +64,12 @@ def explore(payload: AskedQueries, order: Order) -> None:
         total += row.fixtures
         entry = {
             "title": row.name,
-            "toolkit": {"kind": query.toolkit.kind, **toolkit_fields(query.toolkit)},
+            "toolkit": {"kind": query.toolkit.kind, **make_toolkit_fields(query.toolkit)},
             "counts": dict(row.found),
             "fixtures": row.fixtures,
             "estimated": row.about is not None,
             "figures": dict(row.figures),
-            "edgeless": is_edgeless(row.figures, no_edge(query.workpiece, query.toolkit)),
+            "edgeless": is_edgeless(row.figures, find_edgeless_distance(query.workpiece, query.toolkit)),
             "fit": row.fit,
             "note": row.reason,
         }
@@ -77,34 +77,36 @@ def explore(payload: AskedQueries, order: Order) -> None:
         order.report(("progress", number / len(queries), total))
 
 
-def explanation(payload: AskedQueries, order: Order) -> Explanation:
+def explain_result(payload: AskedQueries, order: Order) -> Explanation:
     from workhold.search.explaining import explain
 
     return explain(payload.query)
 
 
 def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> AskedQueries:
-    """Make the queries of a request, and checks what can be checked before the search."""
+    """Make the queries of a request, and check what can be checked before the search."""
     from workhold.contact.problem import Problem
     from workhold.search.seated import refuse_unasked
 
     form, most_segments = payload
-    queries = form.queries(most_segments)
+    queries = form.to_queries(most_segments)
     if len(queries) == 1:
         Problem.of(queries[0][1])
         if queries[0][1].seating is not None:
             refuse_unasked(queries[0][1])
-    return AskedQueries.of(queries)
+    return AskedQueries.from_queries(queries)
 
 
 def make_lesson(payload: tuple[WorkpieceForm, int], order: Order) -> dict[str, Any]:
-    from workhold.presenting.lesson import lesson
+    from workhold.presenting.lesson import compute_lesson
 
     form, most_segments = payload
-    return lesson(form.workpiece(most_segments), order.cancel)
+    return compute_lesson(form.to_workpiece(most_segments), order.cancel)
 
 
-def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) -> list[dict[str, Any]]:
+def compute_loads(
+    payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order
+) -> list[dict[str, Any]]:
     from workhold.presenting.data import load_case_data
     from workhold.statics.loads import load_cases
 
@@ -114,19 +116,19 @@ def loads(payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: Order) 
     return [load_case_data(case) for case in cases]
 
 
-def warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict[str, Any]:
-    from workhold.drawing.sheet_facts import result_cautions
+def list_warnings(payload: tuple[Result, bool, dict[str, Any]], order: Order) -> dict[str, Any]:
+    from workhold.drawing.sheet_facts import list_result_cautions
     from workhold.statics.why_first import why_first
 
     result, is_first, asked = payload
-    cautions = result_cautions(result, 1, **asked)
+    cautions = list_result_cautions(result, 1, **asked)
     return {
         "warnings": [{"kind": caution.kind, "sentence": caution.sentence} for caution in cautions],
         "why_first": why_first(result, asked["unit"]) if is_first else "",
     }
 
 
-def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
+def rank_by_load_reaction(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, float]]:
     import numpy as np
 
     from workhold.model.quality import LOAD_REACTION
@@ -143,19 +145,19 @@ def resist(payload: tuple[Result, LoadsForm], order: Order) -> list[tuple[int, f
 
 TASKS: Tasks = {
     "search": search,
-    "explore": explore,
-    "explanation": explanation,
+    "explore": explore_toolkits,
+    "explanation": explain_result,
     "check_body": check_body,
     "check_job": check_job,
     "check_part": check_part,
     "make_lesson": make_lesson,
-    "builtin_part": builtin_part,
+    "builtin_part": describe_builtin_part,
     "read_part": read_part,
     "survey_part": survey_part,
     "look_at_program": look_at_program,
-    "loads": loads,
-    "warnings": warnings,
-    "resist": resist,
+    "loads": compute_loads,
+    "warnings": list_warnings,
+    "resist": rank_by_load_reaction,
     "paper": make_paper,
     "seating": find_seating,
     "closing": close,
@@ -166,6 +168,6 @@ TASKS: Tasks = {
 }
 
 
-def work(connection: Connection, kind: str, memory_bytes: int) -> None:
-    """Run a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.worker_main`."""
-    worker_main(connection, memory_bytes, TASKS, partial(warm_up, kind))
+def run_worker(connection: Connection, kind: str, memory_bytes: int) -> None:
+    """Run a worker of a kind, see :func:`warm_up` and :func:`workhold.web.worker.run_tasks`."""
+    run_tasks(connection, memory_bytes, TASKS, partial(warm_up, kind))

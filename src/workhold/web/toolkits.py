@@ -14,17 +14,24 @@ from typing import Any
 
 from attrs import asdict, frozen
 
-from workhold.asking.declaring import Choice, Declaration, declarations_of
+from workhold.asking.declaring import Choice, Declaration, list_declarations
 from workhold.asking.search import RuledOut, SearchQuestion
 from workhold.asking.sheet import SheetQuestion
-from workhold.drawing.panel import arrangement_words
-from workhold.files.result.writer import toolkit_fields
+from workhold.drawing.panel import describe_arrangement
+from workhold.files.result.writer import make_toolkit_fields
 from workhold.files.toolkit_file import LoadedToolkit
-from workhold.fixels.kinds import PAGES, kind_of, table_of, toolkit_of
+from workhold.fixels.kinds import PAGES, find_table, make_toolkit, resolve_kind
 from workhold.fixels.setup_words import PageWords
 from workhold.fixels.support_hardware import HARDWARE
 
-__all__ = ["DESCRIBED", "Described", "kinds_answer", "page_kind", "questions_answer", "toolkit_answer"]
+__all__ = [
+    "DESCRIBED",
+    "Described",
+    "describe_kinds",
+    "choose_page_kind",
+    "describe_questions",
+    "describe_toolkit",
+]
 
 
 # How the page reads a form of field where it has no form of its own for it; choices are taken by "one" or
@@ -50,7 +57,7 @@ class PageField:
     table: str | None = None
 
 
-def page_fields(row: Declaration, table: str | None = None) -> Iterator[PageField]:
+def list_page_fields(row: Declaration, table: str | None = None) -> Iterator[PageField]:
     for one in row.labels:
         choosing = "several" if one.several else "one"
         form = choosing if one.choices else PAGE_FORMS.get(row.form, row.form)
@@ -75,13 +82,13 @@ class Described:
     @property
     def said(self) -> Mapping[str, Any]:
         """Fields that the kind's name says by itself."""
-        return kind_of(self.name)[1]
+        return resolve_kind(self.name)[1]
 
     @property
     def fields(self) -> tuple[PageField, ...]:
         """Fields of the page: those of the kind without those that its name says."""
-        rows = (row for row in table_of(kind_of(self.name)[0]).fields if row.name not in self.said)
-        return tuple(one for row in rows for one in page_fields(row))
+        rows = (row for row in find_table(resolve_kind(self.name)[0]).fields if row.name not in self.said)
+        return tuple(one for row in rows for one in list_page_fields(row))
 
     @property
     def roles(self) -> dict[str, str]:
@@ -89,14 +96,14 @@ class Described:
         any_heights = (1.0, 2.0)
         return {
             row.name: role
-            for row in table_of(kind_of(self.name)[0]).fields
+            for row in find_table(resolve_kind(self.name)[0]).fields
             if row.form == "heights"
-            for role in toolkit_of(self.name, {**self.words.start, row.name: any_heights}).heights
+            for role in make_toolkit(self.name, {**self.words.start, row.name: any_heights}).heights
         }
 
     def answer(self) -> dict[str, Any]:
-        toolkit = toolkit_of(self.name, self.words.start)
-        types = {one.name: arrangement_words(one, toolkit) for one in toolkit.arrangements}
+        toolkit = make_toolkit(self.name, self.words.start)
+        types = {one.name: describe_arrangement(one, toolkit) for one in toolkit.arrangements}
         return {
             "name": self.name,
             "kind": toolkit.kind,
@@ -109,30 +116,30 @@ class Described:
             "start": dict(self.words.start),
             "types": [{"name": name, "words": words} for name, words in types.items()],
             "fields": [asdict(one) for one in self.fields],
-            "hardware": hardware_answer(),
+            "hardware": describe_hardware(),
             "roles": self.roles,
         }
 
 
-def questions_answer() -> dict[str, list[dict[str, Any]]]:
-    """What the page asks of a search and of a sheet, field by field, with the section that each is in."""
+def describe_questions() -> dict[str, list[dict[str, Any]]]:
+    """Return what the page asks of a search and of a sheet, field by field, with the section that each is in."""
     questions = {"restrictions": RuledOut, "search": SearchQuestion, "sheet": SheetQuestion}
     return {
         name: [
             asdict(one) | {"section": row.section, "help": row.help, "needs": row.needs}
-            for row in declarations_of(question)
-            for one in page_fields(row, name)
+            for row in list_declarations(question)
+            for one in list_page_fields(row, name)
         ]
         for name, question in questions.items()
     }
 
 
-def hardware_answer() -> list[dict[str, Any]]:
+def describe_hardware() -> list[dict[str, Any]]:
     return [
         {
             "name": name,
             "title": kind.table.summary,
-            "fields": [asdict(one) for row in kind.table.fields for one in page_fields(row, name)],
+            "fields": [asdict(one) for row in kind.table.fields for one in list_page_fields(row, name)],
         }
         for name, kind in HARDWARE.items()
     ]
@@ -141,26 +148,26 @@ def hardware_answer() -> list[dict[str, Any]]:
 DESCRIBED = tuple(Described(name, words) for name, words in PAGES.items())
 
 
-def kinds_answer() -> list[dict[str, Any]]:
+def describe_kinds() -> list[dict[str, Any]]:
     return [one.answer() for one in DESCRIBED]
 
 
-def page_kind(loaded: LoadedToolkit) -> str:
-    """Names the kind under which the page shows a toolkit: the one whose name says most of its fields."""
+def choose_page_kind(loaded: LoadedToolkit) -> str:
+    """Name the kind under which the page shows a toolkit: the one whose name says most of its fields."""
     fits = [
         one
         for one in DESCRIBED
-        if kind_of(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()
+        if resolve_kind(one.name)[0] == loaded.kind and one.said.items() <= loaded.fields.items()
     ]
     return max(fits, key=lambda one: len(one.said)).name
 
 
-def toolkit_answer(loaded: LoadedToolkit) -> dict[str, Any]:
+def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
     """Describe a preset; its kind is one of those that the page has fields for."""
-    given = toolkit_fields(loaded.toolkit)
+    given = make_toolkit_fields(loaded.toolkit)
     return {
         "name": loaded.name,
-        "kind": page_kind(loaded),
+        "kind": choose_page_kind(loaded),
         "title": loaded.title,
         "source": loaded.source,
         "unit": loaded.unit.name,

@@ -31,7 +31,7 @@ from attrs import frozen
 from workhold.errors import InputError, lacks_memory
 from workhold.files.apart import limit_memory, limit_processor
 
-__all__ = ["CANCEL", "Order", "Tasks", "discard_folders", "return_memory", "worker_main"]
+__all__ = ["CANCEL", "Order", "Tasks", "discard_folders", "return_memory", "run_tasks"]
 
 # The name of a message that asks a task to stop.
 CANCEL = "cancel"
@@ -58,9 +58,7 @@ class Order:
 Tasks = Mapping[str, Callable[[Any, Order], Any]]
 
 
-def worker_main(
-    connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]
-) -> None:
+def run_tasks(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: Callable[[], object]) -> None:
     """Run tasks until the pipe ends; the process's main function.
 
     Parameters
@@ -76,9 +74,9 @@ def worker_main(
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     limit_memory(memory_bytes)
     orders: SimpleQueue[tuple[int, str, float, Any, Event]] = SimpleQueue()
-    Thread(target=listen, args=(connection, orders), daemon=True).start()
+    Thread(target=receive_orders, args=(connection, orders), daemon=True).start()
     warm_up()
-    own_folder()
+    make_own_folder()
     connection.send(("ready", 0, None))
     while True:
         number, name, seconds, payload, cancel = orders.get()
@@ -93,7 +91,7 @@ def worker_main(
         except InputError as error:
             answer = ("refused", number, str(error))
         except Exception as error:
-            answer = ("failed", number, said_of(error, memory_bytes))
+            answer = ("failed", number, explain_task_error(error, memory_bytes))
         del payload
         connection.send(answer)
         # What was found is the server's now; waiting for the next order takes no memory.
@@ -105,26 +103,26 @@ def worker_main(
 folders: list[str] = []
 
 
-def own_folder() -> None:
+def make_own_folder() -> None:
     """Make a folder for what tasks of this process write for a time, if one can be made."""
     with suppress(OSError):
-        folders.append(tempfile.mkdtemp(prefix=folder_prefix(os.getpid())))
+        folders.append(tempfile.mkdtemp(prefix=make_folder_prefix(os.getpid())))
         tempfile.tempdir = folders[0]
 
 
-def folder_prefix(process: int) -> str:
+def make_folder_prefix(process: int) -> str:
     """Return what the name of a worker's folder begins with, by the number of its process."""
     return f"workhold-worker-{process}-"
 
 
 def discard_folders(process: int | None) -> None:
     """Remove the folder of a worker that has ended, with all that its tasks have left there."""
-    for path in Path(tempfile.gettempdir()).glob(f"{folder_prefix(process or 0)}*"):
+    for path in Path(tempfile.gettempdir()).glob(f"{make_folder_prefix(process or 0)}*"):
         shutil.rmtree(path, ignore_errors=True)
 
 
 @cache
-def trimming() -> Any:
+def find_memory_trimmer() -> Any:
     """Return the function of the C library that gives freed memory back; None where it has none."""
     with suppress(OSError, AttributeError, TypeError):
         return ctypes.CDLL(None).malloc_trim
@@ -138,12 +136,12 @@ def return_memory() -> None:
     back by themselves.
     """
     gc.collect()
-    trim = trimming()
+    trim = find_memory_trimmer()
     if trim is not None:
         trim(ctypes.c_size_t(0))
 
 
-def said_of(error: Exception, memory_bytes: int) -> str:
+def explain_task_error(error: Exception, memory_bytes: int) -> str:
     """Return a sentence for the client of a task that failed; standard error gets the traceback."""
     if lacks_memory(error):
         return f"This needs more than the {memory_bytes >> 20} MiB of memory the server gives."
@@ -154,7 +152,7 @@ def said_of(error: Exception, memory_bytes: int) -> str:
     return "The program has a mistake that this request brought out; please report it."
 
 
-def listen(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
+def receive_orders(connection: Connection, orders: SimpleQueue[tuple[int, str, float, Any, Event]]) -> None:
     """Receive messages from the server; end the process when the server has ended."""
     newest, cancel = 0, Event()
     while True:

@@ -15,7 +15,7 @@ from workhold.errors import InputError
 from workhold.files.budget import LIMITS
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.part.load import read_workpiece
-from workhold.files.part.survey import drawn_layers, survey
+from workhold.files.part.survey import list_drawn_layers, survey_part_file
 from workhold.geometry import loop as loop_module
 from workhold.geometry.loop import Comparisons, LoopShape, find_near_segments, loop_segments
 
@@ -46,7 +46,7 @@ def test_a_unit_that_is_no_number_is_asked_for(tmp_path: Path, unit: str) -> Non
     with pytest.raises(InputError, match="unit is not"):
         read_workpiece(path)
     assert read_workpiece(path, unit="mm").workpiece.bounds[2] == 60.0
-    assert survey(path).asked == ("unit",)
+    assert survey_part_file(path).asked == ("unit",)
 
 
 @pytest.mark.parametrize("unit", ["1e400", "1x", "4,5"])
@@ -96,7 +96,7 @@ def test_the_unit_is_asked_for_whatever_the_numbers_are(tmp_path: Path, code: st
         read_workpiece(path)
     with pytest.raises(InputError, match=r"no_unit\.dxf: "):
         read_workpiece(path, unit="mm")
-    assert survey(path).asked == ("unit",)
+    assert survey_part_file(path).asked == ("unit",)
 
 
 def test_a_file_without_a_model_space_is_damaged(tmp_path: Path) -> None:
@@ -108,10 +108,10 @@ def test_a_file_without_a_model_space_is_damaged(tmp_path: Path) -> None:
     layouts = "330\n17\n0\nLAYOUT\n5\n1E\n0\nENDSEC\n0\nEOF\n"
     path = tmp_path / "none.dxf"
     path.write_text("0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n0\nENDSEC\n" + objects + layouts)
-    for read in (read_workpiece, lambda file: drawn_layers(file, None, None)):
+    for read in (read_workpiece, lambda file: list_drawn_layers(file, None, None)):
         with pytest.raises(InputError, match=r"none\.dxf: the DXF file is damaged"):
             read(path)
-    assert survey(path).loaded is None
+    assert survey_part_file(path).loaded is None
 
 
 def test_no_warning_comes_before_the_sentence(tmp_path: Path) -> None:
@@ -125,7 +125,7 @@ def test_no_warning_comes_before_the_sentence(tmp_path: Path) -> None:
         for file in (path, part):
             with pytest.raises(InputError, match="finite number"):
                 read_workpiece(file)
-        assert survey(path).loaded is None
+        assert survey_part_file(path).loaded is None
 
 
 def insert(block: str, columns: int = 1, rows: int = 1, handle: str = "") -> str:
@@ -145,7 +145,7 @@ def test_arrays_of_nothing_count(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     blocks = block("A", insert("B", 30, 30)) + block("B", "")
     path = drawing(tmp_path / "arrays.dxf", insert("A", 30, 30), blocks=blocks)
     with pytest.raises(InputError, match="more than the 1,000 entities"):
-        drawn_layers(path, None, None)
+        list_drawn_layers(path, None, None)
     with pytest.raises(InputError, match="more than the 1,000 entities"):
         read_workpiece(path)
 
@@ -205,10 +205,10 @@ def test_circles_within_circles_are_nested_by_the_one_around() -> None:
 
     from workhold.files.budget import UNLIMITED, Budget
     from workhold.files.outline.joining import Loop
-    from workhold.files.outline.nesting import nest
+    from workhold.files.outline.nesting import nest_loops
 
     loops = [Loop(np.array([[r, 0.0, 1.0], [-r, 0.0, 1.0]]), ("", "")) for r in range(1, 201)]
     budget = Budget(UNLIMITED)
-    parts = nest(loops, budget)
+    parts = nest_loops(loops, budget)
     assert len(parts) == 100 and all(len(part.loops) == 2 for part in parts)
     assert budget.steps <= 400

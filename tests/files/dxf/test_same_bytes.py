@@ -15,9 +15,9 @@ SRC = Path(__file__).parents[3] / "src"
 PLATES = """
 import sys
 from workhold import Vise
-from workhold.files.dxf.writer import plates_dxf
+from workhold.files.dxf.writer import make_plates_dxf
 from workhold.model.dowels import list_jaw_plates
-sys.stdout.buffer.write(plates_dxf(list_jaw_plates(Vise(pitch=20, columns=2, peg_radius=3, rows=3))))
+sys.stdout.buffer.write(make_plates_dxf(list_jaw_plates(Vise(pitch=20, columns=2, peg_radius=3, rows=3))))
 """
 
 

@@ -18,7 +18,7 @@ from ezdxf.document import Drawing
 from plate_examples import WAYS, on_plate
 
 from workhold import Fixture, Vise, Workpiece
-from workhold.files.dxf.writer import layers_of, plates_dxf, setup_dxf
+from workhold.files.dxf.writer import list_layer_colours, make_plates_dxf, make_setup_dxf
 from workhold.model.dowels import Bolts, list_jaw_plates, place_plates_in_drawing
 
 Held = tuple[Fixture, Workpiece, Vise]
@@ -26,7 +26,7 @@ Held = tuple[Fixture, Workpiece, Vise]
 
 def reread(held: Held) -> Drawing:
     """What ezdxf makes of the bytes."""
-    return ezdxf.read(io.TextIOWrapper(io.BytesIO(setup_dxf(*held)), encoding="utf-8"))
+    return ezdxf.read(io.TextIOWrapper(io.BytesIO(make_setup_dxf(*held)), encoding="utf-8"))
 
 
 def distance_to_part(document: Drawing, x: float, y: float) -> float:
@@ -58,7 +58,9 @@ def distance_to_part(document: Drawing, x: float, y: float) -> float:
 def test_the_cutter_keeps_off_the_pegs(body: float | None, clearance: float, radius: float) -> None:
     """About each peg there is a circle on KEEP_OUT, the clearance larger than the peg's thickest part."""
     fixture, part, vise = diamond()
-    text = setup_dxf(fixture, part, evolve(vise, body_radius=body or vise.peg_radius), clearance=clearance)
+    text = make_setup_dxf(
+        fixture, part, evolve(vise, body_radius=body or vise.peg_radius), clearance=clearance
+    )
     circles = (
         ezdxf.read(io.TextIOWrapper(io.BytesIO(text), encoding="utf-8"))
         .modelspace()
@@ -92,7 +94,7 @@ def test_audit_finds_nothing(made: Callable[[], Held]) -> None:
     assert not auditor.has_errors and not auditor.has_fixes
     assert document.header["$INSUNITS"] == 4
     used = {entity.dxf.layer for entity in document.modelspace()}
-    assert used == {*layers_of(held[2])}
+    assert used == {*list_layer_colours(held[2])}
     assert all(name in document.layers for name in used)
 
 
@@ -170,7 +172,7 @@ def test_pegs_without_size_are_points() -> None:
 
 def test_bytes_are_the_same_every_time() -> None:
     """No time, no random numbers; and the option of ezdxf that sees to it is put back."""
-    assert setup_dxf(*example()) == setup_dxf(*example())
+    assert make_setup_dxf(*example()) == make_setup_dxf(*example())
     assert options.write_fixed_meta_data_for_testing is False
 
 
@@ -185,7 +187,7 @@ def test_locators_and_clamp_of_a_plate_touch_the_part(way: str, bolted: bool) ->
     space = document.modelspace()
     auditor = document.audit()
     assert not auditor.has_errors and not auditor.has_fixes
-    assert {entity.dxf.layer for entity in space} == set(layers_of(held[2]))
+    assert {entity.dxf.layer for entity in space} == set(list_layer_colours(held[2]))
     circles = [*space.query('CIRCLE[layer=="LOCATORS"]'), *space.query('CIRCLE[layer=="CLAMP"]')]
     assert [tuple(circle.dxf.center)[:2] for circle in circles] == [(peg.x, peg.y) for peg in held[0].pegs]
     for circle in circles:
@@ -206,8 +208,8 @@ def test_locators_and_clamp_of_a_plate_touch_the_part(way: str, bolted: bool) ->
 def test_bytes_do_not_depend_on_the_process() -> None:
     """Two processes that order sets in different ways write the same file."""
     code = (
-        "import hashlib, drawing_examples; from workhold.files.dxf.writer import setup_dxf; "
-        "print(hashlib.sha256(setup_dxf(*drawing_examples.example())).hexdigest())"
+        "import hashlib, drawing_examples; from workhold.files.dxf.writer import make_setup_dxf; "
+        "print(hashlib.sha256(make_setup_dxf(*drawing_examples.example())).hexdigest())"
     )
     said = set()
     for seed in ("4", "5"):
@@ -227,7 +229,7 @@ PLATES = list_jaw_plates(
 
 def test_every_hole_is_drawn_at_its_place() -> None:
     """Circles of the diameters given, moved with their plate; the plates do not touch."""
-    document = ezdxf.read(io.TextIOWrapper(io.BytesIO(plates_dxf(PLATES)), encoding="utf-8"))
+    document = ezdxf.read(io.TextIOWrapper(io.BytesIO(make_plates_dxf(PLATES)), encoding="utf-8"))
     space = document.modelspace()
     assert document.header["$INSUNITS"] == 4
     for layer, diameter, places in (
@@ -253,4 +255,4 @@ def test_every_hole_is_drawn_at_its_place() -> None:
 
 def test_the_same_plates_give_the_same_bytes() -> None:
     """No date and no random number."""
-    assert plates_dxf(PLATES) == plates_dxf(PLATES)
+    assert make_plates_dxf(PLATES) == make_plates_dxf(PLATES)

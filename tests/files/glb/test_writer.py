@@ -14,7 +14,7 @@ from body_examples import BLOCK, TOOLKITS, held
 from glb_reading import ReadBody, fixture_glb, read_glb
 from workhold import Vise
 from workhold.errors import InputError
-from workhold.files.glb import SAGITTA, bodies_glb
+from workhold.files.glb import SAGITTA, make_bodies_glb
 from workhold.geometry.segment import Arc, Line
 from workhold.model.bodies import COLOURS, BodyKind, BodySizes, FixtureBody, Slab, list_fixture_bodies
 from workhold.model.solid import SolidOutline
@@ -193,7 +193,7 @@ def test_sides_that_vanish_in_single_precision_are_left_out() -> None:
     corners = [(0.0, 0.0), (9.0, 0.0), (9.0, 1e-5), (9.0, 7.0), (1e-5, 1e-5)]
     loop = tuple(Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True))
     body = FixtureBody("wedge", BodyKind.WALL, (Slab(loop, (), 0.0, 2.0),))
-    (read,) = read_glb(bodies_glb([body], "wedge"))[1]
+    (read,) = read_glb(make_bodies_glb([body], "wedge"))[1]
     read.assert_closed()
     assert read.volume == pytest.approx(63.0, rel=1e-4) and len(read.triangles) == 2 + 6
 

@@ -21,10 +21,10 @@ from reading_helpers import area, read_dxf, read_svg, rectangle
 
 import workhold
 from workhold import Tolerance, Workpiece
-from workhold.drawing.part_pictures import first_parameter
+from workhold.drawing.part_pictures import compute_first_parameter
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.result.writer import notes_entry
+from workhold.files.result.writer import make_notes_entry
 from workhold.geometry.segment import Arc
 from workhold.model.notes import FittedOutline
 
@@ -198,7 +198,9 @@ def joint_turns(part: Workpiece) -> list[float]:
     """By how much, in radians, the outline turns at each joint."""
     turns = []
     for one, other in zip(part.segments, part.segments[1:] + part.segments[:1], strict=True):
-        (ax, ay), (bx, by) = (s.normal(first_parameter(s) * sign) for s, sign in ((one, -1.0), (other, 1.0)))
+        (ax, ay), (bx, by) = (
+            s.normal(compute_first_parameter(s) * sign) for s, sign in ((one, -1.0), (other, 1.0))
+        )
         turns.append(float(np.arctan2(ax * by - ay * bx, ax * bx + ay * by)))
     return turns
 
@@ -309,7 +311,7 @@ def test_the_departure_stays_with_the_part(tmp_path: Path) -> None:
     assert result.notes[-1] == again.notes[-1] == note and note not in added.notes
     assert f"up to {part.departure:.2g} mm off the drawn one" in str(note)
     assert workhold.verify(tmp_path / "result.json").holds
-    silent = written | notes_entry([one for one in result.notes if one != note])
+    silent = written | make_notes_entry([one for one in result.notes if one != note])
     (tmp_path / "result.json").write_text(json.dumps(silent))
     assert workhold.verify(tmp_path / "result.json").faults == (f'the note is missing that says "{note}"',)
 

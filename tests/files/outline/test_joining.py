@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from reading_helpers import area, read_dxf, rectangle
 
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, rebulged
-from workhold.files.outline.joining import close_pairs, groups, join
+from workhold.files.outline.chain import Chain, compute_moved_bulge
+from workhold.files.outline.joining import close_pairs, group_by_pairs, join
 from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Arc, make_segment_from_bulge
 
@@ -62,7 +62,7 @@ def test_exploding_shuffling_and_joining_gives_the_loop_back(
             for x, y in chain.points
         )
         moved_chain = Chain(moved, chain.bulges, chain.labels)
-        chains.append(moved_chain.reversed() if randomly.random() < 0.5 else moved_chain)
+        chains.append(moved_chain.reverse() if randomly.random() < 0.5 else moved_chain)
     randomly.shuffle(chains)
     joined = join(chains, 1e-3)
     assert len(joined.loops) == 1
@@ -92,7 +92,9 @@ def test_moving_an_arcs_ends_moves_centre_and_radius_no_more(bulge: float, moves
     start, end = (3.0, 4.0), (13.0, 9.0)
     new_start, new_end = (3.0 + moves[0], 4.0 + moves[1]), (13.0 + moves[2], 9.0 + moves[3])
     before = make_segment_from_bulge(start, end, bulge)
-    after = make_segment_from_bulge(new_start, new_end, rebulged(start, end, bulge, new_start, new_end))
+    after = make_segment_from_bulge(
+        new_start, new_end, compute_moved_bulge(start, end, bulge, new_start, new_end)
+    )
     assert isinstance(before, Arc)
     assert isinstance(after, Arc)
     movement = hypot(*moves)
@@ -320,7 +322,7 @@ def test_close_pairs_are_those_of_brute_force(seed: int, count: int, tolerance: 
             apart = hypot(*(points[i] - points[j]))
             if apart > 0 and (i, j) in pairs:
                 assert apart <= tolerance
-    group = groups(count, close_pairs(points, tolerance))
+    group = group_by_pairs(count, close_pairs(points, tolerance))
     for i in range(count):
         for j in range(i + 1, count):
             if hypot(*(points[i] - points[j])) <= tolerance - 1e-9:
@@ -338,7 +340,7 @@ def test_two_hundred_thousand_ends_pair_quickly() -> None:
 def test_bulge_of_a_quarter() -> None:
     """The helper's own ground: an unmoved arc keeps its bulge, tan(sweep / 4)."""
     quarter = tan(pi / 8)
-    assert rebulged((1, 0), (0, 1), quarter, (1, 0), (0, 1)) == pytest.approx(quarter, rel=1e-14)
+    assert compute_moved_bulge((1, 0), (0, 1), quarter, (1, 0), (0, 1)) == pytest.approx(quarter, rel=1e-14)
 
 
 @pytest.mark.parametrize("backwards", [False, True])

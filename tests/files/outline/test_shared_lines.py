@@ -14,7 +14,7 @@ from reading_helpers import area, read_dxf, rectangle
 from workhold.errors import InputError
 from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.chain import Chain, Drawing
-from workhold.files.outline.shared_lines import lie_on_each_other, outlines_of
+from workhold.files.outline.shared_lines import make_outlines, run_along_each_other
 from workhold.files.part.load import read_workpiece
 from workhold.geometry.segment import Line, make_segment_from_bulge
 
@@ -145,13 +145,13 @@ def test_what_overlaps_is_found_by_its_line_or_circle() -> None:
         Line((10.0, 0.0), (20.0, 0.0)),
         Line((9.0, 0.0), (4.0, 0.0)),
     )
-    assert not lie_on_each_other([one, row], 1e-3) and lie_on_each_other([one, row, other], 1e-3)
-    assert not lie_on_each_other([one, Line((0.0, 1.0), (10.0, 1.0))], 1e-3)
+    assert not run_along_each_other([one, row], 1e-3) and run_along_each_other([one, row, other], 1e-3)
+    assert not run_along_each_other([one, Line((0.0, 1.0), (10.0, 1.0))], 1e-3)
     arc = make_segment_from_bulge((0.0, 0.0), (10.0, 0.0), 1.0)
-    assert lie_on_each_other(
+    assert run_along_each_other(
         [arc, make_segment_from_bulge((0.0, 0.0), (5.0, -5.0), 0.41421356237309503)], 1e-3
     )
-    assert not lie_on_each_other([arc, make_segment_from_bulge((10.0, 0.0), (0.0, 0.0), 1.0)], 1e-3)
+    assert not run_along_each_other([arc, make_segment_from_bulge((10.0, 0.0), (0.0, 0.0), 1.0)], 1e-3)
 
 
 def add_bad_spot(space: Any, x: float, y: float, layer: str = "0") -> None:
@@ -278,6 +278,6 @@ def test_many_ends_at_one_place_are_told_once() -> None:
     rays = [Chain(((0.0, 0.0), (-1.0 - k, 7.0)), (0.0,), (f"ray {k}",)) for k in range(60)]
     # What stands for the limit of the map of the plane: more than it looks at.
     with patch("workhold.files.outline.plane_map.MOST_SEGMENTS", 10):
-        found = outlines_of([*chains, *rays], 1e-3, Drawing((), layers=Layers()), Budget(UNLIMITED))
+        found = make_outlines([*chains, *rays], 1e-3, Drawing((), layers=Layers()), Budget(UNLIMITED))
     assert len(found.spots) == 1 and found.spots[0].junction.point == (0.0, 0.0)
     assert len(looked) == 62

@@ -14,7 +14,7 @@ from reading_helpers import RECTANGLE, area
 
 from workhold import load
 from workhold.errors import InputError
-from workhold.files.part.load import builtin_parts, read_workpiece
+from workhold.files.part.load import list_builtin_parts, read_workpiece
 
 PLATE: dict[str, Any] = {"name": "plate", "units": "mm", "loops": [[[x, y, 0] for x, y in RECTANGLE]]}
 
@@ -25,7 +25,7 @@ def write(tmp_path: Path, content: Any, name: str = "part.json") -> Path:
     return path
 
 
-@pytest.mark.parametrize("name", [part.name for part in builtin_parts()])
+@pytest.mark.parametrize("name", [part.name for part in list_builtin_parts()])
 def test_every_builtin_part_loads_by_name_in_any_capitals(name: str) -> None:
     """Seven models of the paper's parts; each has an area and keeps its name."""
     part = load(name.upper())

@@ -12,8 +12,8 @@ from attrs import evolve
 
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.part.load import read_workpiece
-from workhold.files.part.survey import survey
-from workhold.files.questions import worded
+from workhold.files.part.survey import survey_part_file
+from workhold.files.questions import name_questions
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 CORNERS = [(0.0, 0.0), (100.0, 0.0), (100.0, 60.0), (40.0, 80.0), (0.0, 60.0)]
@@ -36,7 +36,7 @@ def drawn(path: Path, units: int = 4, gaps: tuple[float, ...] = (0.0,) * 5, hole
 def test_a_part_that_can_be_read_is_read_as_ever() -> None:
     """The same part, remarks and parts; nothing is asked."""
     seen, loaded = (
-        survey(EXAMPLES / "bracket.dxf", called=CALLED),
+        survey_part_file(EXAMPLES / "bracket.dxf", called=CALLED),
         read_workpiece(EXAMPLES / "bracket.dxf", called=CALLED),
     )
     assert seen.loaded is not None
@@ -55,12 +55,12 @@ def test_a_drawing_without_a_unit_is_asked_for_it(tmp_path: Path, kind: str) -> 
         drawn(path, units=0)
     else:
         path.write_text('<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H100V80H0Z"/></svg>')
-    seen = survey(path, called=CALLED)
+    seen = survey_part_file(path, called=CALLED)
     assert seen.loaded is None and seen.asked == ("unit",)
     assert '"Unit"' in seen.refusal and "<unit>" not in seen.refusal
     assert seen.size == pytest.approx((100, 80))
     for unit, factor in (("mm", 1.0), ("inch", 25.4)):
-        answered = survey(path, unit=unit, called=CALLED)
+        answered = survey_part_file(path, unit=unit, called=CALLED)
         assert answered.loaded is not None and answered.asked == ()
         assert answered.size == pytest.approx((100 * factor, 80 * factor))
         x0, y0, x1, y1 = answered.loaded.workpiece.bounds
@@ -71,10 +71,10 @@ def test_gaps_are_those_that_were_left(tmp_path: Path) -> None:
     """Each width once; joining up to the widest gives the pentagon, and up to less does not."""
     gaps = (0.02, 0.15, 0.4, 0.0, 1.2)
     path = drawn(tmp_path / "gaps.dxf", gaps=gaps)
-    seen = survey(path, called=CALLED)
+    seen = survey_part_file(path, called=CALLED)
     assert seen.gaps == pytest.approx((0.02, 0.15, 0.4, 1.2), rel=1e-5)
     for join, closed in ((0.5, False), (seen.gaps[-1] * (1 + 1e-5), True)):
-        answered = survey(path, join_tolerance=join, called=CALLED)
+        answered = survey_part_file(path, join_tolerance=join, called=CALLED)
         assert answered.gaps == seen.gaps
         loops = [] if answered.loaded is None else answered.loaded.workpiece.loops
         assert (len(loops) == 2) == closed
@@ -82,7 +82,9 @@ def test_gaps_are_those_that_were_left(tmp_path: Path) -> None:
 
 def test_an_outline_that_is_not_closed_asks_how_far_to_join(tmp_path: Path) -> None:
     """The refusal of the reader, and which question it leaves."""
-    seen = survey(drawn(tmp_path / "open.dxf", gaps=(0.0, 0.0, 0.3, 0.0, 0.0), hole=False), called=CALLED)
+    seen = survey_part_file(
+        drawn(tmp_path / "open.dxf", gaps=(0.0, 0.0, 0.3, 0.0, 0.0), hole=False), called=CALLED
+    )
     assert seen.loaded is None and seen.asked == ("join_tolerance",)
     assert '"Join"' in seen.refusal and seen.parts == ()
     assert len(seen.chains) == 5 and seen.gaps == pytest.approx((0.3,), rel=1e-5)
@@ -95,7 +97,7 @@ def test_all_parts_are_told(tmp_path: Path) -> None:
         document.modelspace().add_lwpolyline([(x, 0), (x + size, 0), (x + size, size), (x, size)], close=True)
     document.saveas(tmp_path / "parts.dxf")
     for number, size in ((None, 30), (2, 20), (3, 10)):
-        seen = survey(tmp_path / "parts.dxf", part_number=number, called=CALLED)
+        seen = survey_part_file(tmp_path / "parts.dxf", part_number=number, called=CALLED)
         assert seen.loaded is not None
         assert seen.loaded.workpiece.bounds[3] == size
         assert [part.bounds[3] for part in seen.parts] == [30, 20, 10]
@@ -112,12 +114,12 @@ def test_layers_are_told_with_what_is_on_them(tmp_path: Path) -> None:
     document.modelspace().add_text("note", dxfattribs={"layer": "WORDS"})
     document.saveas(tmp_path / "layers.dxf")
     for layers in (None, ["OUTLINE"]):
-        seen = survey(tmp_path / "layers.dxf", layers=layers, called=CALLED)
+        seen = survey_part_file(tmp_path / "layers.dxf", layers=layers, called=CALLED)
         assert [(one.name, one.hidden, len(one.chains)) for one in seen.layers] == [
             ("LOOSE", True, 1),
             ("OUTLINE", False, 1),
         ]
-    assert survey(EXAMPLES / "plate.json", called=CALLED).layers == ()
+    assert survey_part_file(EXAMPLES / "plate.json", called=CALLED).layers == ()
 
 
 def test_ends_that_could_go_on_in_two_ways_are_refused_and_drawn(tmp_path: Path) -> None:
@@ -126,27 +128,27 @@ def test_ends_that_could_go_on_in_two_ways_are_refused_and_drawn(tmp_path: Path)
     document = ezdxf.readfile(path)
     document.modelspace().add_line((100, 0), (140, -20))
     document.saveas(path)
-    seen = survey(path, called=CALLED)
+    seen = survey_part_file(path, called=CALLED)
     assert seen.loaded is None and "3 ends meet" in seen.refusal
     assert (seen.parts, seen.gaps, len(seen.chains)) == ((), (), 7)
 
 
 def test_files_that_are_no_drawings_have_no_size(tmp_path: Path) -> None:
     """JSON is read, or refused, and has no strokes."""
-    seen = survey(EXAMPLES / "plate.json", called=CALLED)
+    seen = survey_part_file(EXAMPLES / "plate.json", called=CALLED)
     assert seen.loaded is not None and (seen.size, seen.chains) == (None, ())
     (tmp_path / "note.txt").write_text("hello")
-    seen = survey(tmp_path / "note.txt", called=CALLED)
+    seen = survey_part_file(tmp_path / "note.txt", called=CALLED)
     assert seen.loaded is None and "neither a JSON" in seen.refusal and seen.parts == ()
 
 
 def test_no_mark_is_left_in_any_sentence(tmp_path: Path) -> None:
     """Refusals and remarks are in the words of whoever asks."""
     for path in (drawn(tmp_path / "a.dxf", units=0), EXAMPLES / "bracket.dxf"):
-        seen = survey(path, called=CALLED)
+        seen = survey_part_file(path, called=CALLED)
         words = [seen.refusal, *(seen.loaded.remarks if seen.loaded else ())]
-        assert [worded(one, None) for one in words] == words
-    assert np.isfinite(survey(path, called=CALLED).size or np.nan).all()
+        assert [name_questions(one, None) for one in words] == words
+    assert np.isfinite(survey_part_file(path, called=CALLED).size or np.nan).all()
 
 
 @pytest.mark.parametrize("kind", ["dxf", "svg"])
@@ -165,6 +167,6 @@ def test_a_drawing_that_asks_for_too_much_is_read_once(
     monkeypatch.setattr(
         Budget, "__init__", lambda self, *args: (begun.append(args[0].what), usual(self, *args))[1]
     )
-    seen = survey(path, called=CALLED)
+    seen = survey_part_file(path, called=CALLED)
     assert seen.loaded is None and "more than the 2" in seen.refusal and seen.size is None
     assert begun.count(LIMITS[kind].what) == 1

@@ -18,7 +18,7 @@ from workhold.errors import InputError
 from workhold.files.budget import FileLimits
 from workhold.files.result import parts
 from workhold.files.result.reader import read_result
-from workhold.files.text import json_value, read_limited
+from workhold.files.text import parse_json, read_limited
 
 HOSTILE = Path(__file__).parents[2] / "data" / "hostile"
 BEGIN = b'{"format": "workhold-result/1",\n"fixtures": [\n'
@@ -171,8 +171,8 @@ def test_json_of_too_many_brackets_or_values_is_refused() -> None:
     """Each takes fifty bytes and more of memory for two of the file."""
     for text in ("[" + "[]," * 1_000_000 + "[]]", "[" + "1," * 2_000_001 + "1]"):
         with pytest.raises(InputError, match=r"the file holds more than [12] million"):
-            json_value(text)
-        json_value(text, times=2.0)
+            parse_json(text)
+        parse_json(text, times=2.0)
 
 
 def seated(change: Any) -> dict[str, Any]:

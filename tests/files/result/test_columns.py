@@ -13,14 +13,14 @@ import pytest
 import workhold
 from fakes import fake_proof, fake_result
 from workhold import Result
-from workhold.archive import ArchiveWriter, mapped_archive
+from workhold.archive import ArchiveWriter, map_archive
 from workhold.errors import InputError
 from workhold.files.result import columns as in_columns
-from workhold.files.result.columns import significant, write_columns
-from workhold.files.result.parts import HEAD, columns_of
+from workhold.files.result.columns import round_to_twelve_digits, write_columns
+from workhold.files.result.parts import HEAD, describe_columns
 from workhold.files.result.reader import read_result
 from workhold.files.result.writer import write_result
-from workhold.listing.identity import entries
+from workhold.listing.identity import make_entries
 from workhold.model.fixture_table import FixtureTable
 from workhold.verification.listing import read_listing
 
@@ -41,7 +41,7 @@ def test_the_same_bytes_come_back_from_the_other_form(tmp_path: Path, count: int
 def test_a_file_without_fixtures_lists_none(tmp_path: Path) -> None:
     workhold.save(fake_result(0), tmp_path / "a.npz")
     read = workhold.open(tmp_path / "a.npz")
-    assert len(read.table.take(np.zeros(0, np.int64))) == 0 and len(entries(read).index) == 0
+    assert len(read.table.take(np.zeros(0, np.int64))) == 0 and len(make_entries(read).index) == 0
 
 
 def test_both_forms_give_the_same_result(tmp_path: Path) -> None:
@@ -72,8 +72,10 @@ def test_numbers_are_rounded_as_twelve_digits_are_read() -> None:
     values = np.concatenate(
         [values, powers, np.nextafter(powers, 0), np.nextafter(powers, np.inf), halves, [0.0, 5e-324, 1e300]]
     )
-    np.testing.assert_array_equal(significant(values), [float(f"{value:.12g}") for value in values])
-    assert np.isnan(significant(np.array([np.nan, 1.0, np.inf, -np.inf]))).tolist() == [
+    np.testing.assert_array_equal(
+        round_to_twelve_digits(values), [float(f"{value:.12g}") for value in values]
+    )
+    assert np.isnan(round_to_twelve_digits(np.array([np.nan, 1.0, np.inf, -np.inf]))).tolist() == [
         True,
         False,
         True,
@@ -99,9 +101,9 @@ def test_one_fixture_is_read_and_not_the_others(tmp_path: Path, monkeypatch: pyt
 def rewritten(path: Path, result: Result, head: Callable[[str], str], **changed: Any) -> Path:
     """A file in columns of a result with another head and other columns."""
     write_columns(result, path)
-    text, columns = mapped_archive(path, columns_of(1), HEAD)
+    text, columns = map_archive(path, describe_columns(1), HEAD)
     with path.with_suffix(".new").open("wb") as stream:
-        archive = ArchiveWriter(stream, columns_of(1), len(result))
+        archive = ArchiveWriter(stream, describe_columns(1), len(result))
         archive.add([changed.get(name, values) for name, values in columns.items()])
         archive.close(HEAD, head(text), "mark")
     return path.with_suffix(".new")

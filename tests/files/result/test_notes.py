@@ -11,7 +11,7 @@ import pytest
 
 import workhold
 from workhold import InputError, Query, Restrictions, Result, Vise, Workpiece, design, verify
-from workhold.files.result.notes import recognised
+from workhold.files.result.notes import recognize_note
 from workhold.model.notes import (
     STAGES,
     AskedFor,
@@ -154,4 +154,4 @@ EVERY: tuple[Note, ...] = (
 
 @pytest.mark.parametrize("note", EVERY, ids=lambda note: note.kind)
 def test_every_note_of_an_older_file_is_recognised(note: Note) -> None:
-    assert recognised(note.words, QUERY, 99) == note
+    assert recognize_note(note.words, QUERY, 99) == note

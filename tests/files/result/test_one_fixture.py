@@ -92,8 +92,8 @@ def test_same_holes_are_some(made: Any) -> None:
 def test_the_others_are_read_once_they_are_asked_for(made: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     whole, folder = made("vise")
     rows = list[int]()
-    read = reader.fixture_row
-    monkeypatch.setattr(reader, "fixture_row", lambda fixture: rows.append(1) or read(fixture))
+    read = reader.make_fixture_row
+    monkeypatch.setattr(reader, "make_fixture_row", lambda fixture: rows.append(1) or read(fixture))
     one = read_one(folder / "r.json", 5)
     assert one[4].listing.others == whole[4].listing.others and len(rows) == 1
     assert one[3] == whole[3] and one[5] == whole[5] and one.counts == whole.counts and one == whole

@@ -15,7 +15,7 @@ import workhold
 from slow_program import END_MILL, PEG_HEIGHT, kinds_of_toolkit, path, program_of, random_program
 from strategies import random_outline
 from workhold import InputError, Query, Result, answer, answer_to_file
-from workhold.files.result.fixture_text import result_csv_text
+from workhold.files.result.fixture_text import write_result_csv
 from workhold.files.result.reader import read_result
 from workhold.model.quality import FIGURES
 
@@ -104,7 +104,7 @@ def test_columns_without_a_program_are_as_wide_as_ever(tmp_path: Path) -> None:
         workhold.save(one, tmp_path / f"{name}.npz")
         assert np.load(tmp_path / f"{name}.npz")["quality"].shape == (4, wide)
     assert "program_clearance" not in (tmp_path / "b.npz").read_bytes().decode("latin-1")
-    assert "program_clearance" in next(result_csv_text(result))
+    assert "program_clearance" in next(write_result_csv(result))
 
 
 @pytest.mark.parametrize(

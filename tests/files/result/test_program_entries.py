@@ -12,9 +12,9 @@ import workhold
 from workhold import Program, Query, Vise, answer, load
 from workhold.errors import InputError
 from workhold.files.result import writer
-from workhold.files.result.parts import head_value
+from workhold.files.result.parts import parse_head
 from workhold.files.result.reader import read_result
-from workhold.files.result.writer import head_texts, program_text
+from workhold.files.result.writer import write_head_json, write_program_json
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import SweptPiece, moves_of, pack_piece
 
@@ -34,9 +34,9 @@ def test_text_in_parts_is_that_of_the_whole(
     """However many pieces are written at a time, the text is the JSON of the entries, also within a head."""
     monkeypatch.setattr(writer, "AT_ONCE", at_once)
     one = program(rapid=rapid)
-    assert "".join(program_text(one)) == json.dumps(one.to_dict())
+    assert "".join(write_program_json(one)) == json.dumps(one.to_dict())
     head = {"format": "x", "program": one.head(), "name": "Bügel", "best": None}
-    told = json.loads("".join(head_texts(head, one, ", ")) + "}")
+    told = json.loads("".join(write_head_json(head, one, ", ")) + "}")
     assert told == {**head, "program": one.to_dict()} and list(told) == list(head)
 
 
@@ -44,7 +44,7 @@ def test_text_in_parts_is_that_of_the_whole(
 def test_pieces_are_packed_while_a_head_is_read(rapid: str) -> None:
     """Not one piece is an object once the text is read; the program is the same as from entries, but for feeds."""
     one = program(rapid=rapid)
-    entries = head_value("".join(program_text(one)))
+    entries = parse_head("".join(write_program_json(one)))
     assert {type(piece) for piece in entries["pieces"]} == {bytes}
     read, plain = Program.of_entries(entries), Program.of_entries(one.to_dict())
     assert read == plain and read.pieces == one.pieces
@@ -73,7 +73,7 @@ def test_pieces_that_are_none_are_refused(change: Any, sentence: str) -> None:
     entries = program().to_dict()
     change(entries["pieces"])
     with pytest.raises((InputError, LookupError), match=sentence):
-        Program.of_entries(head_value(json.dumps(entries)))
+        Program.of_entries(parse_head(json.dumps(entries)))
 
 
 def test_packed_pieces_make_the_moves_of_their_objects() -> None:

@@ -20,8 +20,8 @@ from workhold import Tolerance, Vise, design, load
 from workhold.errors import InputError
 from workhold.files.result import fixture_text
 from workhold.files.result.reader import read_result
-from workhold.files.result.writer import result_text, write_result
-from workhold.files.toolkit_file import preset
+from workhold.files.result.writer import write_result, write_result_text
+from workhold.files.toolkit_file import load_preset
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import Remark
 from workhold.model.search_report import Undecided
@@ -114,7 +114,7 @@ def test_no_negative_zero_and_no_full_turn_is_written() -> None:
         arrangement=np.array([0], np.int8),
     )
     stream = io.StringIO()
-    stream.writelines(result_text(attrs.evolve(result, table=table)))
+    stream.writelines(write_result_text(attrs.evolve(result, table=table)))
     assert '"pose": {"theta_deg": 0.0, "x": 0.0, "y": 0.0}' in stream.getvalue()
     assert "-0.0" not in stream.getvalue().replace("-0.0]", "")
 
@@ -128,7 +128,7 @@ def test_fixtures_become_objects_a_block_at_a_time(monkeypatch: pytest.MonkeyPat
         return take(self, order)
 
     monkeypatch.setattr(FixtureTable, "take", recorded)
-    io.StringIO().writelines(result_text(fake_result(9000)))
+    io.StringIO().writelines(write_result_text(fake_result(9000)))
     assert sizes == [fixture_text.BLOCK] * 3
 
 
@@ -168,7 +168,7 @@ def test_an_error_on_the_way_leaves_the_earlier_file(tmp_path: Path, monkeypatch
     def broken(*_: object) -> object:
         raise MemoryError
 
-    monkeypatch.setattr(fixture_text, "rounded", broken)
+    monkeypatch.setattr(fixture_text, "round_to_steps", broken)
     with pytest.raises(MemoryError):
         write_result(fake_result(3), path)
     assert path.read_text() == "old"
@@ -422,7 +422,7 @@ def test_statistics_survive_the_round_trip(tmp_path: Path) -> None:
 
 def test_the_fit_of_the_dowels_survives_the_round_trip(tmp_path: Path) -> None:
     """What a named vise says of its pins and their holes is what the sheet of the result tells; None stays None."""
-    for fit in (preset("plate-20mm").tolerance.fit, None):
+    for fit in (load_preset("plate-20mm").tolerance.fit, None):
         result = fake_result(2)
         result = attrs.evolve(
             result, query=attrs.evolve(result.query, tolerance=Tolerance(0.0145, 0.02, fit))

@@ -30,9 +30,15 @@ from solid_examples import cone, cross_drilled, polygon, tilted
 from workhold import Vise, design
 from workhold.cli.main import app
 from workhold.errors import InputError
-from workhold.files.step.bands import branches_of
-from workhold.files.step.heights import HeightOutline, height_table, longest, measures, standing
-from workhold.files.step.library import along, occ, sub_shapes
+from workhold.files.step.bands import split_into_branches
+from workhold.files.step.heights import (
+    HeightOutline,
+    find_longest_row,
+    measure_outline,
+    stand_solid,
+    tabulate_peg_heights,
+)
+from workhold.files.step.library import list_sub_shapes, occ, turn_axis_up
 from workhold.files.step.projected import OtherCurveError, ProjectedCurves
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Arc, Line, cross_carrying_line_and_circle, make_segment_from_bulge
@@ -76,7 +82,7 @@ def ramp() -> Any:
 
 def profile(*points: tuple[float, float]) -> Any:
     """A body 40 mm wide over a polygon of places along it and heights; it runs along y."""
-    return along(polygon(points, 40), "y")
+    return turn_axis_up(polygon(points, 40), "y")
 
 
 def pad(corners: Sequence[tuple[float, float]], arc: Arc) -> Any:
@@ -84,7 +90,7 @@ def pad(corners: Sequence[tuple[float, float]], arc: Arc) -> Any:
     ends = [gp_Pnt(x, z, 0) for x, z in corners]
     sides = [GC_MakeSegment(a, b).Value() for a, b in pairwise([ends[-1], *ends[:-1]])]
     round_side = GC_MakeArcOfCircle(ends[-2], gp_Pnt(*arc.middle, 0), ends[-1]).Value()
-    return along(prism([*sides, round_side], 42), "y")
+    return turn_axis_up(prism([*sides, round_side], 42), "y")
 
 
 SOLIDS: dict[str, Callable[[], Any]] = {
@@ -127,7 +133,7 @@ CASES = [
 def outline_at(shape: Any, height: float) -> HeightOutline | str:
     """The outline of a standing solid, or why there is none."""
     try:
-        return standing(shape).outline(height)
+        return stand_solid(shape).make_outline(height)
     except InputError as error:
         return str(error)
 
@@ -135,7 +141,7 @@ def outline_at(shape: Any, height: float) -> HeightOutline | str:
 @pytest.mark.parametrize(("name", "axis", "share"), CASES)
 def test_bands_are_covered_and_no_longer_run_is_passed_over(name: str, axis: str, share: float) -> None:
     """A peg touches over all of its band, half as much as it can, and the moved part has the moved bands."""
-    solid = standing(along(SOLIDS[name](), axis))
+    solid = stand_solid(turn_axis_up(SOLIDS[name](), axis))
     height = round(share * solid.height, 3)
     outline = outline_at(solid.shape, height)
     if isinstance(outline, str):
@@ -154,7 +160,7 @@ def test_a_closed_edge_may_be_lowest_where_it_begins(height: float, degrees: flo
     start = gp_Dir(cos(radians(degrees)), sin(radians(degrees)), 0)
     frame = gp_Ax2(gp_Pnt(30, 20, -5), gp_Dir(0, 0, 1), start)
     bore = BRepPrimAPI_MakeCylinder(frame, 10, 80).Shape()
-    outline = standing(cut(sloped(box(60, 40, 40), 20, 0.2), bore)).outline(height)
+    outline = stand_solid(cut(sloped(box(60, 40, 40), 20, 0.2), bore)).make_outline(height)
     walls = [strip.band for loop in outline.loops for strip in loop if strip.bulge]
     assert walls and all(band == (0.0, pytest.approx(24.0, abs=1e-6)) for band in walls)
 
@@ -164,7 +170,7 @@ def test_a_rim_that_rises_far_is_halved_alike_from_its_lowest_point() -> None:
     bore = cylinder(10, 80, (30, 20, -5))
     strips = [
         strip
-        for loop in standing(cut(sloped(box(60, 40, 60), -10, 1.2), bore)).outline().loops
+        for loop in stand_solid(cut(sloped(box(60, 40, 60), -10, 1.2), bore)).make_outline().loops
         for strip in loop
         if strip.bulge
     ]
@@ -176,8 +182,8 @@ def test_a_rim_that_rises_far_is_halved_alike_from_its_lowest_point() -> None:
 
 def test_what_is_steep_all_along_is_a_jump() -> None:
     """A step of 20 mm that leans by 0.02 mm: walls end where it begins, and are not halved on towards it."""
-    solid = standing(profile((0, 0), (60, 0), (60, 10), (17.02, 10), (17, 30), (0, 30)))
-    sides = [strip for strip in solid.outline().loops[0] if strip.start[0] == strip.end[0]]
+    solid = stand_solid(profile((0, 0), (60, 0), (60, 10), (17.02, 10), (17, 30), (0, 30)))
+    sides = [strip for strip in solid.make_outline().loops[0] if strip.start[0] == strip.end[0]]
     found = sorted((*sorted((strip.start[1], strip.end[1])), *(strip.band or ())) for strip in sides)
     expected = [(0, 17, 0, 30)] * 2 + [(17, 17.02, 0, 10)] * 2 + [(17.02, 60, 0, 10)] * 2
     assert found == [pytest.approx(one, abs=1e-6) for one in expected]
@@ -185,18 +191,18 @@ def test_what_is_steep_all_along_is_a_jump() -> None:
 
 def test_a_bore_above_the_pegs_cuts_nothing() -> None:
     """Its upright tangents are jumps where pegs reach them, and none below."""
-    bored = standing(cut(box(60, 40, 50), across(30, 30, 10)))
-    assert [strip.band for strip in bored.outline(15.0, 25.0).loops[0]] == [(0.0, 15.0)] * 4
-    assert len(bored.outline(31.0).loops[0]) > 4
+    bored = stand_solid(cut(box(60, 40, 50), across(30, 30, 10)))
+    assert [strip.band for strip in bored.make_outline(15.0, 25.0).loops[0]] == [(0.0, 15.0)] * 4
+    assert len(bored.make_outline(31.0).loops[0]) > 4
 
 
 def test_a_wall_over_a_sloping_underside_is_touched_as_far_as_pegs_reach_up_to_it() -> None:
     """Its edge passes the height of the pegs well before that of what is kept free above them."""
     lid = cut(box(60, 40, 40), tilted((0, 0, 5), (1 / 3, 0, -1), (1, 0, 1 / 3)))
-    solid = standing(fused(box(60, 30, 40, (0, 10, 0)), lid))
+    solid = stand_solid(fused(box(60, 30, 40, (0, 10, 0)), lid))
     touched = [
         (*sorted((strip.start[0], strip.end[0])), strip.band)
-        for strip in solid.outline(12.0, 30.0).loops[0]
+        for strip in solid.make_outline(12.0, 30.0).loops[0]
         if strip.band and max(abs(strip.start[1]), abs(strip.end[1])) < 1e-6
     ]
     assert min(low for low, _, _ in touched) == pytest.approx(0.0, abs=1e-6)
@@ -215,7 +221,7 @@ def test_a_wall_that_is_just_long_enough_between_the_points_of_its_edge(sign: fl
     x, z = arc.center[0] - sign * arc.radius * across, arc.center[1] + sign * arc.radius * up
     apart = z - (5 + 0.01 * (x - 10))
     least = apart - 5e-4 * sign
-    outline = standing(body).outline(least_band=least)
+    outline = stand_solid(body).make_outline(least_band=least)
     for place, is_touched in ((x, sign > 0), (x - 3, sign < 0), (x + 3, sign < 0)):
         (strip,) = (
             strip
@@ -234,17 +240,17 @@ def test_a_wall_that_is_just_long_enough_between_the_points_of_its_edge(sign: fl
 
 def test_a_step_back_that_is_rounding_ends_no_branch() -> None:
     """Points beside a turn of an edge may come in the other order."""
-    assert list(branches_of(np.array([0.0, 1.0, 1.0 - 1e-12, 2.0]), ())) == [(0, 3)]
-    assert list(branches_of(np.array([0.0, 1.0, 0.9, 2.0]), ())) == [(0, 1), (1, 2), (2, 3)]
+    assert list(split_into_branches(np.array([0.0, 1.0, 1.0 - 1e-12, 2.0]), ())) == [(0, 3)]
+    assert list(split_into_branches(np.array([0.0, 1.0, 0.9, 2.0]), ())) == [(0, 1), (1, 2), (2, 3)]
 
 
 @pytest.mark.parametrize(("gap", "band"), [(8e-7, (0.0, 30.0)), (2e-6, (10.000002, 30.0))])
 def test_a_gap_of_a_wall_counts_from_a_millionth_on(gap: float, band: tuple[float, float]) -> None:
     """A slot that is narrower than 1e-6 mm leaves one run."""
-    solid = standing(cut(box(60, 40, 30), box(20, 6, gap, (20, -1, 10))))
+    solid = stand_solid(cut(box(60, 40, 30), box(20, 6, gap, (20, -1, 10))))
     (found,) = {
         strip.band
-        for strip in solid.outline().loops[0]
+        for strip in solid.make_outline().loops[0]
         if strip.start[1] == strip.end[1] == 0.0 and strip.start[0] < 30 < strip.end[0]
     }
     assert found == pytest.approx(band, abs=1e-9)
@@ -257,7 +263,7 @@ def test_a_face_that_lies_on_a_wall_takes_nothing_off_its_run() -> None:
     for body in (box(60, 40, 30), box(20, 10, 10, (20, 0, 5))):
         shells = occ.TopExp_Explorer(body, occ.TopAbs_SHELL)
         builder.Add(solid, shells.Current())
-    assert set(standing(solid).outline().bands) == {(0.0, 30.0)}
+    assert set(stand_solid(solid).make_outline().bands) == {(0.0, 30.0)}
 
 
 @pytest.mark.parametrize(
@@ -270,17 +276,17 @@ def test_a_face_that_lies_on_a_wall_takes_nothing_off_its_run() -> None:
 def test_a_line_within_a_face_ends_no_run(block: Any, touching: Any) -> None:
     """Of a body that touches a face from within, an edge is left on that which bounds nothing."""
     marked = fused(block, touching)
-    assert any(edge.Orientation() == occ.TopAbs_INTERNAL for edge in sub_shapes(marked, "EDGE"))
-    solid = standing(marked)
-    walls = {strip.band for strip in solid.outline().loops[0] if not strip.bulge and strip.band}
-    assert (0.0, solid.height) in walls and list(band_faults(marked, solid.outline())) == []
+    assert any(edge.Orientation() == occ.TopAbs_INTERNAL for edge in list_sub_shapes(marked, "EDGE"))
+    solid = stand_solid(marked)
+    walls = {strip.band for strip in solid.make_outline().loops[0] if not strip.bulge and strip.band}
+    assert (0.0, solid.height) in walls and list(band_faults(marked, solid.make_outline())) == []
 
 
 def test_of_neighbours_with_the_same_band_but_for_rounding_both_are_covered() -> None:
     """A ridge that is off the middle by 5e-6 mm: the halves beside it are one segment, as high as the lower."""
-    solid = standing(profile((0, 0), (64, 0), (64, 10), (32.000005, 30), (0, 10)))
+    solid = stand_solid(profile((0, 0), (64, 0), (64, 10), (32.000005, 30), (0, 10)))
     lower = 10 + 16 * 20 / 32.000005
-    found = [strip.band for strip in solid.outline().loops[0] if strip.start[0] == strip.end[0]]
+    found = [strip.band for strip in solid.make_outline().loops[0] if strip.start[0] == strip.end[0]]
     assert [band for band in found if band and abs(band[1] - lower) < 1e-4] == [
         (0.0, pytest.approx(lower, abs=1e-8))
     ] * 2
@@ -288,8 +294,8 @@ def test_of_neighbours_with_the_same_band_but_for_rounding_both_are_covered() ->
 
 def test_no_band_bridges_a_bore() -> None:
     """Over a bore a peg touches below it and above, and the band is one of both, covered throughout."""
-    solid = standing(eye())
-    outline = solid.outline()
+    solid = stand_solid(eye())
+    outline = solid.make_outline()
     for strip in outline.loops[0]:
         if strip.start[1] == strip.end[1] == 30.0 and min(strip.start[0], strip.end[0]) < 35 < max(
             strip.start[0], strip.end[0]
@@ -309,7 +315,7 @@ def test_no_band_bridges_a_bore() -> None:
 
 def test_walls_beside_an_arch_that_is_higher_than_the_pegs_are_touched() -> None:
     """Over an arch of 18 mm pegs of 12 mm touch its sides up to where the arch has risen to 11 mm."""
-    outline = standing(SOLIDS["tunnel"]()).outline(12.0, 8.0)
+    outline = stand_solid(SOLIDS["tunnel"]()).make_outline(12.0, 8.0)
     side = [strip for strip in outline.loops[0] if strip.start[1] == strip.end[1] == 0.0 and strip.band]
     size = sum(abs(strip.end[0] - strip.start[0]) for strip in side)
     assert size == pytest.approx(70 - 2 * sqrt(18**2 - 11**2), abs=1e-3)
@@ -318,8 +324,8 @@ def test_walls_beside_an_arch_that_is_higher_than_the_pegs_are_touched() -> None
 def test_both_sides_of_a_tunnel_are_cut_alike() -> None:
     """The upright tangent of an arch is where the walls beside it end, whatever rounding makes of it."""
     for degrees in (0.0, 37.3, 52.7, 141.0):
-        solid = standing(placed(SOLIDS["tunnel"](), degrees, 3.1, 0.7))
-        strips = [strip for strip in solid.outline(29.5).loops[0] if strip.band]
+        solid = stand_solid(placed(SOLIDS["tunnel"](), degrees, 3.1, 0.7))
+        strips = [strip for strip in solid.make_outline(29.5).loops[0] if strip.band]
         long = sorted(
             (round(hypot(*sub(strip)), 4), strip.band) for strip in strips if strip.band == (0.0, 29.5)
         )
@@ -334,8 +340,8 @@ def sub(strip: Any) -> tuple[float, float]:
 @pytest.mark.parametrize("name", ["eye", "bores of all heights"])
 def test_the_run_at_a_contact_is_the_walls_own(name: str) -> None:
     """What a file keeps along a segment is the run that an upright line finds there, below a bore or above it."""
-    solid = standing(SOLIDS[name]())
-    outline = solid.outline()
+    solid = stand_solid(SOLIDS[name]())
+    outline = solid.make_outline()
     segments = [segment for loop in outline.vertices for segment in loop_segments(loop)]
     looked = 0
     for segment, band, rows in zip(segments, outline.bands, outline.runs, strict=True):
@@ -410,13 +416,13 @@ def test_a_row_of_heights_holds_all_through(name: str) -> None:
         "chamfer": lambda: cut(fused(box(60, 40, 12), cone(14, 10, 4, (30, 20, 12))), across(20, 0, 3)),
         **SOLIDS,
     }
-    solid = standing(made[name]())
-    rows = height_table(solid, 0.5, 1.0)
+    solid = stand_solid(made[name]())
+    rows = tabulate_peg_heights(solid, 0.5, 1.0)
     assert rows and all(row.low < row.high for row in rows)
     for row in rows:
         touched = []
         for share in (0.02, 0.21, 0.48, 0.77, 0.998):
-            outline = solid.outline(row.low + share * (row.high - row.low))
+            outline = solid.make_outline(row.low + share * (row.high - row.low))
             touched.append(sum(length_of(strip) for loop in outline.loops for strip in loop if strip.band))
         if row.touchable == 0.0:
             assert max(touched) == 0.0
@@ -431,7 +437,7 @@ def length_of(strip: Any) -> float:
 
 def test_a_row_begins_where_a_growing_band_is_long_enough() -> None:
     """A flange from 20 up is met from 19.5, and touched once a band of 1 mm is below the pegs' ends."""
-    rows = height_table(standing(fused(box(60, 40, 20), box(80, 60, 5, (-10, -10, 20)))), 0.5, 1.0)
+    rows = tabulate_peg_heights(stand_solid(fused(box(60, 40, 20), box(80, 60, 5, (-10, -10, 20)))), 0.5, 1.0)
     assert [(row.low, row.high, row.touchable) for row in rows] == [
         (1.0, 19.5, pytest.approx(200.0)),
         (19.5, 21.0, 0.0),
@@ -441,7 +447,7 @@ def test_a_row_begins_where_a_growing_band_is_long_enough() -> None:
 
 def test_a_row_begins_where_walls_over_an_arch_are_long_enough() -> None:
     """An arch of 18 mm: from 19 on the wall over it is touched all along."""
-    rows = height_table(standing(SOLIDS["tunnel"]()), 0.5, 1.0)
+    rows = tabulate_peg_heights(stand_solid(SOLIDS["tunnel"]()), 0.5, 1.0)
     assert (rows[-1].low, rows[-1].high, rows[-1].touchable) == (19.0, 30.0, pytest.approx(220.0))
     assert rows[-2].high == 19.0 and rows[-2].touchable < 219.9
 
@@ -450,19 +456,19 @@ def test_of_rows_that_touch_as_much_the_highest_pegs_are_named() -> None:
     rows = [
         HeightRow(low, low + 5.0, 10.0, 20.0, touch, 1.0) for low, touch in ((0, 7), (5, 9), (10, 9), (15, 8))
     ]
-    assert longest(rows) == rows[2] == longest(rows[::-1])
+    assert find_longest_row(rows) == rows[2] == find_longest_row(rows[::-1])
 
 
 def test_a_part_is_as_high_as_its_level_face() -> None:
     """The library's boxes of other faces are higher by 1e-7 mm."""
-    solid = standing(cross_drilled())
+    solid = stand_solid(cross_drilled())
     assert solid.height == 20.0 < max(face.high for face in solid.faces)
 
 
 def test_outlines_that_are_kept_are_those_of_all_that_was_asked() -> None:
     """Other heights, head rooms and lower ends make others, and so does what is told of the silhouette."""
     body = fused(box(60, 40, 8), box(84, 60, 2, (-12, -10, 8)), box(44, 26, 12, (6, 8, 10)))
-    solid = standing(body)
+    solid = stand_solid(body)
     foot, flange, stem = 60 * 40, 84 * 60, 44 * 26
     for _ in range(2):
         for expected, asked in (
@@ -472,18 +478,18 @@ def test_outlines_that_are_kept_are_those_of_all_that_was_asked() -> None:
             (flange, (7.75, 0.5, 1.0)),
             (foot, (7.75, 0.0, 1.0)),
         ):
-            assert measures(solid.outline(*asked))[0] == pytest.approx(expected), asked
-    assert any(solid.outline(5.0, 0.5, 1.0).bands) and not any(solid.outline(5.0, 0.5, 6.0).bands)
-    feet = standing(cut(box(60, 40, 20), box(20, 60, 10, (20, -5, 0))))
-    first = [strip.covered[0].piece.carrier.segment for strip in feet.outline(6.0).loops[0]]
+            assert measure_outline(solid.make_outline(*asked))[0] == pytest.approx(expected), asked
+    assert any(solid.make_outline(5.0, 0.5, 1.0).bands) and not any(solid.make_outline(5.0, 0.5, 6.0).bands)
+    feet = stand_solid(cut(box(60, 40, 20), box(20, 60, 10, (20, -5, 0))))
+    first = [strip.covered[0].piece.carrier.segment for strip in feet.make_outline(6.0).loops[0]]
     for _ in range(2):
-        assert len(feet.outline(5.0, silhouette=first).loops) == 1
-        assert len(feet.outline(5.0).loops) == 2
+        assert len(feet.make_outline(5.0, silhouette=first).loops) == 1
+        assert len(feet.make_outline(5.0).loops) == 2
 
 
 def test_an_outline_that_does_not_close_is_laid_to_the_face_that_leans() -> None:
     """And not to the flat one that it cuts."""
-    solid = standing(SOLIDS["cone into a side"]())
+    solid = stand_solid(SOLIDS["cone into a side"]())
     kinds = [face.kind for face in solid.faces]
     carrier = CutCarrier(Line((0.0, 0.0), (9.0, 0.0)), [(-4.5, 4.5)])
     pieces = [BorderPiece(carrier, -4.5, 4.5, True)]
@@ -491,9 +497,9 @@ def test_an_outline_that_does_not_close_is_laid_to_the_face_that_leans() -> None
     flat, leaning = next(k for k, kind in enumerate(kinds) if kind == "wall"), kinds.index("cone")
     others = ((flat, points), (leaning, points))
     with pytest.raises(OtherCurveError, match="neither line nor arc: a cone at heights"):
-        solid.closed(pieces, ProjectedCurves((), (), others))
+        solid.close_loops(pieces, ProjectedCurves((), (), others))
     with pytest.raises(InputError, match="does not close at"):
-        solid.closed(pieces, ProjectedCurves((), (), ()))
+        solid.close_loops(pieces, ProjectedCurves((), (), ()))
 
 
 @pytest.mark.parametrize("aside", [2e-5, 1e-6, 3e-4, -2e-5, 0.0])
@@ -513,22 +519,22 @@ def test_a_slot_that_all_but_touches_a_hole(aside: float) -> None:
 @pytest.mark.parametrize("turn", [0.0, 37.3])
 def test_a_small_bore_across_a_shaft_is_not_pressed_on(radius: float, turn: float) -> None:
     """Its short rims lie on the shaft's circle, and not on the circles that fit them best."""
-    solid = standing(
+    solid = stand_solid(
         placed(cut(cylinder(20, 40, (0, 0, 0)), cylinder(radius, 60, (-30, 0, 20), (1, 0, 0))), turn)
     )
-    outline = solid.outline(30.0)
+    outline = solid.make_outline(30.0)
     assert list(band_faults(solid.shape, outline)) == []
     beside = [band for band in outline.bands if band and band[1] < 25]
     assert beside == [(0.0, pytest.approx(20 - radius, abs=1e-6))] * len(beside) and len(beside) >= 2
     # Pegs that end below it know nothing of it.
     for height in (20 - radius - 0.6, 20 - radius - 0.5):
-        assert set(solid.outline(height).bands) == {(0.0, height)}
+        assert set(solid.make_outline(height).bands) == {(0.0, height)}
 
 
 def test_an_edge_of_a_wall_runs_along_the_wall() -> None:
     """Of every bore across a shaft, however short its rims: on one line or circle with all other edges of the wall."""
     bores = [cylinder(0.4 + 0.3 * k, 60, (-30, 0, 5 + 5 * k), (1, 0.2 * k, 0)) for k in range(6)]
-    solid = standing(cut(cylinder(20, 40, (0, 0, 0)), *bores))
+    solid = stand_solid(cut(cylinder(20, 40, (0, 0, 0)), *bores))
     arcs = [
         edge.segment
         for edge in solid.edges
@@ -543,17 +549,17 @@ def test_an_edge_of_a_wall_runs_along_the_wall() -> None:
 @pytest.mark.parametrize("below", [5.0, 0.1, 5e-3, 3e-3, 1e-3, 1e-4, 1e-5])
 def test_a_tunnel_is_open_up_to_its_crown(below: float) -> None:
     """Where it is cut just below that, the two sides rise by next to nothing from the cut."""
-    bored = standing(placed(cut(box(70, 40, 30), across(28, 0, 18)), 37.3))
+    bored = stand_solid(placed(cut(box(70, 40, 30), across(28, 0, 18)), 37.3))
     high = 18.0 - below
-    area, _, _, _ = measures(bored.outline(high - 0.5))
+    area, _, _, _ = measure_outline(bored.make_outline(high - 0.5))
     assert area == pytest.approx(40 * (70 - 2 * sqrt(18**2 - high**2)), abs=2e-4)
 
 
 @pytest.mark.parametrize("rise", [0.1, 0.01, 0.002])
 def test_an_underside_that_hardly_rises_is_cut_where_pegs_end(rise: float) -> None:
     """What lies beyond the cut is over the pegs, however little."""
-    wedge = standing(cut(box(60, 40, 40), tilted((0, 0, 0), (rise, 0, -1), (1, 0, rise))))
-    area, _, _, _ = measures(wedge.outline(24 * rise, 6 * rise, least_band=1e-3))
+    wedge = stand_solid(cut(box(60, 40, 40), tilted((0, 0, 0), (rise, 0, -1), (1, 0, rise))))
+    area, _, _, _ = measure_outline(wedge.make_outline(24 * rise, 6 * rise, least_band=1e-3))
     assert area == pytest.approx(40 * 30, abs=1e-3)
 
 
@@ -561,18 +567,20 @@ def test_an_underside_that_hardly_rises_is_cut_where_pegs_end(rise: float) -> No
 @pytest.mark.parametrize("height", [10.0, 10.0 - 1e-9, 10.0 + 1e-9])
 def test_pegs_may_end_level_with_the_crown_of_a_tunnel(aslant: float, height: float) -> None:
     """Over the crown nothing is left to touch, but beside it there is, from the tunnel's wall up."""
-    bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
-    outline = bored.outline(height)
+    bored = stand_solid(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
+    outline = bored.make_outline(height)
     assert list(band_faults(bored.shape, outline, count=7)) == []
-    assert measures(outline)[2] == pytest.approx(measures(bored.outline(height + 1e-3))[2], abs=0.05)
+    assert measure_outline(outline)[2] == pytest.approx(
+        measure_outline(bored.make_outline(height + 1e-3))[2], abs=0.05
+    )
 
 
 @pytest.mark.parametrize("aslant", [0.0, 0.4])
 @pytest.mark.parametrize("above", [1e-6, 3e-6, 8e-6, 1.2e-5])
 def test_what_bridges_a_tunnel_may_be_as_thin_as_rounding(aslant: float, above: float) -> None:
     """Over the middle of the opening too little of it to be seen lies below the end of the pegs, and more beside."""
-    bored = standing(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
-    area, border, _, _ = measures(bored.outline(9.5 + above))
+    bored = stand_solid(cut(box(70, 50, 30), cylinder(10, 120, (20, -10, 0), (aslant, 1, 0))))
+    area, border, _, _ = measure_outline(bored.make_outline(9.5 + above))
     assert (area, border) == pytest.approx((70 * 50, 2 * (70 + 50)), abs=1e-6)
 
 
@@ -580,7 +588,7 @@ def test_what_bridges_a_tunnel_may_be_as_thin_as_rounding(aslant: float, above: 
 def test_pegs_may_end_next_to_a_corner_of_a_slope(off: float) -> None:
     """Its height is that of a corner to five digits: the sides of the cut are too near to the edge to be seen."""
     ridge = cut(sloped(box(60, 40, 40), 14, 0.5), tilted((60, 0, 22), (0.4, 0, 1), (-1, 0, 0.4)))
-    solid = standing(along(cut(ridge, cylinder(8, 80, (31, 20, -5))), "-z"))
+    solid = stand_solid(turn_axis_up(cut(ridge, cylinder(8, 80, (31, 20, -5))), "-z"))
     (corner,) = {round(z, 9) for face in solid.faces for z in (face.low, face.high) if 15 < z < 20}
-    area, _, _, _ = measures(solid.outline(corner + off - 0.5))
+    area, _, _, _ = measure_outline(solid.make_outline(corner + off - 0.5))
     assert area == pytest.approx(60 * 40 - 64 * pi, abs=5e-3)

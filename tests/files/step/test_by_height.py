@@ -29,10 +29,10 @@ from workhold import Fence, Plate, Restrictions, Vise, Workpiece, design, save, 
 from workhold import open as workhold_open
 from workhold.cli.main import app
 from workhold.errors import InputError
-from workhold.files.part.survey import survey
-from workhold.files.step.heights import StandingSolid, standing
-from workhold.files.step.library import along, bounding_box, sub_shapes
-from workhold.files.step.regions import area_of, section
+from workhold.files.part.survey import survey_part_file
+from workhold.files.step.heights import StandingSolid, stand_solid
+from workhold.files.step.library import compute_bounding_box, list_sub_shapes, turn_axis_up
+from workhold.files.step.regions import cut_solid_at_height, measure_area
 from workhold.files.toolkit_file import load_toolkit
 from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Line, segment_rows
@@ -49,7 +49,7 @@ def standing_as_read(shape: Any) -> SolidOutline:
 
 def strips(shape: Any, *heights: float, **more: float) -> list[tuple[tuple[float, ...], Band | None]]:
     """Start, bulge and band of every segment of a solid's outline, rounded."""
-    outline = standing(shape).outline(*heights, **more)
+    outline = stand_solid(shape).make_outline(*heights, **more)
     return [
         (
             tuple(round(value, 6) + 0.0 for value in (*strip.start, strip.bulge)),
@@ -67,7 +67,7 @@ def bands(shape: Any, *heights: float, **more: float) -> list[Band | None]:
 
 def area(solid: StandingSolid, low: float, high: float) -> float:
     """Area of U(low, high)."""
-    loops = [[(*piece.start, piece.bulge) for piece in loop] for loop in solid.border(low, high)]
+    loops = [[(*piece.start, piece.bulge) for piece in loop] for loop in solid.find_border(low, high)]
     return sum(compute_signed_area(loop_segments(np.array(loop))) for loop in loops)
 
 
@@ -88,7 +88,7 @@ def test_prism() -> None:
 
 def test_flange_is_met_from_its_underside_on() -> None:
     """Pegs that end level with the underside of a flange are not in its way; with head room they are."""
-    solid = standing(FLANGED)
+    solid = stand_solid(FLANGED)
     assert area(solid, -1, 20.0) == pytest.approx(2400)
     assert area(solid, -1, 20.1) == pytest.approx(4800)
     assert bands(FLANGED, 20.0, 0.0) == [(0, 20)] * 4
@@ -174,10 +174,10 @@ def test_holes() -> None:
         cylinder(4, 14, (40, 28, -1)),
         cylinder(3, 40, (55, 20, -5)),
     )
-    outline = standing(drilled).outline(10.0, 0.5)
+    outline = stand_solid(drilled).make_outline(10.0, 0.5)
     assert len(outline.loops) == 4  # through at 15, through at 55, blind from below with 12.5 > 10.5
-    assert area(standing(drilled), -1, 10.5) == pytest.approx(2400 - pi * (36 + 16 + 9), abs=1e-6)
-    assert area(standing(drilled), -1, 13.5) == pytest.approx(2400 - pi * (36 + 9), abs=1e-6)
+    assert area(stand_solid(drilled), -1, 10.5) == pytest.approx(2400 - pi * (36 + 16 + 9), abs=1e-6)
+    assert area(stand_solid(drilled), -1, 13.5) == pytest.approx(2400 - pi * (36 + 9), abs=1e-6)
 
 
 def solids() -> list[tuple[str, Any]]:
@@ -205,7 +205,7 @@ def test_sections_lie_within_and_fill(name: str, shape: Any) -> None:
 
     The sections are Open CASCADE's; the areas that they cover are counted on a grid of points.
     """
-    solid = standing(shape)
+    solid = stand_solid(shape)
     highest = solid.height
     points = np.stack(np.meshgrid(np.arange(-14.31, 75, 1.713), np.arange(-14.13, 60, 1.317)), -1).reshape(
         -1, 2
@@ -215,26 +215,28 @@ def test_sections_lie_within_and_fill(name: str, shape: Any) -> None:
         rows = segment_rows(
             [
                 segment
-                for loop in solid.border(-1.0, high)
+                for loop in solid.find_border(-1.0, high)
                 for segment in loop_segments(np.array([(*piece.start, piece.bulge) for piece in loop]))
             ]
         )
         within = np.array([bool(is_inside(x, y, rows)) for x, y in points])
-        covered = np.array(solid.material.reaches_into([(float(x), float(y)) for x, y in points], -1.0, high))
+        covered = np.array(solid.material.lies_between([(float(x), float(y)) for x, y in points], -1.0, high))
         assert (within == covered).all()
         size = area(solid, -1.0, high)
         assert size >= before - 1e-9
         before = size
         for z in np.linspace(0.02, high - 0.02, 7):
-            assert area_of(section(solid.shape, float(z))) <= size * (1 + 1e-9)
+            assert measure_area(cut_solid_at_height(solid.shape, float(z))) <= size * (1 + 1e-9)
 
 
 def test_solid_turned_over_twice() -> None:
     """Turned over twice the part lies as before, and U(H) is the same from both sides but mirrored."""
     shape = dict(solids())["stepped"]
-    twice = along(along(shape, "-z"), "-z")
+    twice = turn_axis_up(turn_axis_up(shape, "-z"), "-z")
     assert strips(twice, 9.0) == strips(shape, 9.0)
-    assert area(standing(along(shape, "-z")), -1, 40) == pytest.approx(area(standing(shape), -1, 40))
+    assert area(stand_solid(turn_axis_up(shape, "-z")), -1, 40) == pytest.approx(
+        area(stand_solid(shape), -1, 40)
+    )
 
 
 def test_axes_are_right_handed() -> None:
@@ -255,7 +257,7 @@ def test_what_other_heights_offer_is_listed_whoever_names_one(tmp_path: Path, he
     """A flange over a foot: the table has a row below and one above the foot's top."""
     flanged = fused(box(50, 30, 10), box(50, 40, 6, (0, -5, 10)))
     path = write_step(tmp_path / "flanged.step", flanged)
-    loaded = survey(path, peg_height=height).loaded
+    loaded = survey_part_file(path, peg_height=height).loaded
     assert loaded is not None and len({row.touchable for row in loaded.heights}) >= 2
 
 
@@ -294,10 +296,10 @@ def test_fixtures_hold_the_solid(tmp_path: Path) -> None:
     toolkit = load_toolkit("clamp-plate-20mm").toolkit
     result = design(part, toolkit, best=6)
     assert len(result) > 0
-    solid = standing(shape)
+    solid = stand_solid(shape)
     for fixture in list(result)[:3]:
         for peg in fixture.pegs:
-            carrier = toolkit.carrier(peg.carrier)
+            carrier = toolkit.find_carrier(peg.carrier)
             pegs_touch(solid, part, peg, carrier.peg_radius, fixture.pose, 0.5)
 
 
@@ -331,7 +333,7 @@ def test_pieces_of_one_line_with_other_bands_are_other_faces(tmp_path: Path) -> 
     slotted = cut(PLATE, box(20, 60, 10, (20, -5, 0)))
     part = load(write_step(tmp_path / "part.step", slotted), peg_height=15.0)
     assert len(part.faces) == 8
-    above = load(write_step(tmp_path / "part.step", along(slotted, "-z")), peg_height=8.0)
+    above = load(write_step(tmp_path / "part.step", turn_axis_up(slotted, "-z")), peg_height=8.0)
     assert len(above.faces) == 4
 
 
@@ -578,7 +580,7 @@ def split(shape: Any, z: float, *ends: tuple[float, float]) -> Any:
     (ax, ay), (bx, by) = ends
     line = BRepBuilderAPI_MakeEdge(gp_Pnt(ax, ay, z), gp_Pnt(bx, by, z)).Edge()
     maker = BRepFeat_SplitShape(shape)
-    maker.Add(line, next(f for f in sub_shapes(shape, "FACE") if at_height(z)(*bounding_box(f))))
+    maker.Add(line, next(f for f in list_sub_shapes(shape, "FACE") if at_height(z)(*compute_bounding_box(f))))
     maker.Build()
     return maker.Shape()
 
@@ -592,7 +594,7 @@ def test_faces_split_by_an_imprinted_line_are_one() -> None:
     assert rounded_loops(solid.bottom) == rounded_loops(solid.top) == whole
     lying = split(disc, 0.0, (0, 5), (0, 20))
     lying = split(lying, 0.0, (0, -20), (0, -5))
-    assert len([f for f in standing(lying).faces if f.lie == "level" and not f.upward]) == 2
+    assert len([f for f in stand_solid(lying).faces if f.lie == "level" and not f.upward]) == 2
     found = standing_as_read(lying).bottom
     areas = sorted(compute_signed_area(loop_segments(np.array(loop))) for loop in found)
     assert areas == pytest.approx([-25 * pi, 400 * pi])
@@ -609,13 +611,13 @@ def test_faces_split_by_an_imprinted_line_are_one() -> None:
 @pytest.mark.parametrize("name", ["casting", "counterbored", "overlapped", "slanted", "valve body"])
 def test_upright_lines_run_inside_where_the_library_says(name: str) -> None:
     """Over random points the intervals are those that Open CASCADE's classifier finds at random heights."""
-    solid = standing(next(one for one in EXAMPLES if one.name == name).make())
+    solid = stand_solid(next(one for one in EXAMPLES if one.name == name).make())
     chance = np.random.default_rng(5)
     boxes = solid.edge_boxes
     low, high = (*boxes[:, :2].min(axis=0), 0.0), (*boxes[:, 2:4].max(axis=0), solid.height)
     found = []
     for x, y, z in chance.uniform(low, high, (300, 3)).tolist():
-        inside = any(start < z < end for start, end in solid.material.intervals((x, y)))
+        inside = any(start < z < end for start, end in solid.material.find_material_intervals((x, y)))
         assert inside == solid.material.is_inside((x, y), z), (x, y, z)
         found.append(inside)
     assert 20 < sum(found) < 280
@@ -624,5 +626,5 @@ def test_upright_lines_run_inside_where_the_library_says(name: str) -> None:
 def test_upright_lines_on_an_edge_of_two_faces_meet_them_once() -> None:
     """Through an imprinted line on both sides an upright line runs inside from the bottom to the top."""
     halves = split(split(PLATE, 0.0, (30, 0), (30, 40)), 20.0, (30, 0), (30, 40))
-    ((low, high),) = standing(halves).material.intervals((30.0, 12.0))
+    ((low, high),) = stand_solid(halves).material.find_material_intervals((30.0, 12.0))
     assert (low, high) == pytest.approx((0.0, 20.0))

@@ -18,7 +18,7 @@ from solid_truth import fixture_faults
 from workhold import Fence, FlatJaw, Plate, Query, Vise, answer, load
 from workhold.cli.main import app
 from workhold.family.members import RANKINGS
-from workhold.files.step.library import along
+from workhold.files.step.library import turn_axis_up
 from workhold.fixels.toolkit import Toolkit
 
 
@@ -77,7 +77,7 @@ def test_each_part_of_a_plan_lies_as_its_own_list_says(name: str, tmp_path: Path
     for (solid, shape), axis in [(one, axis) for one in SOLIDS.items() for axis in ("z", "-z")]:
         part = load(tmp_path / f"{solid}.step", axis=axis, peg_height=7, heights=toolkit.heights)
         result = answer(Query(part, toolkit, rank_by=RANKINGS[toolkit.travels]), threads=1)
-        lists.append((along(shape, axis), part, result))
+        lists.append((turn_axis_up(shape, axis), part, result))
     assert [one["fixtures"] for one in found["parts"]] == [len(result) for _, _, result in lists]
     held = [one for plan in found["curve"] for setup in plan["plan"] for one in setup["parts"]]
     assert held
@@ -94,8 +94,8 @@ def lowered(shape: Any) -> Any:
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
     from OCP.gp import gp_Trsf, gp_Vec
 
-    from workhold.files.step.library import bounding_box
+    from workhold.files.step.library import compute_bounding_box
 
     move = gp_Trsf()
-    move.SetTranslation(gp_Vec(0, 0, -bounding_box(shape)[0][2]))
+    move.SetTranslation(gp_Vec(0, 0, -compute_bounding_box(shape)[0][2]))
     return BRepBuilderAPI_Transform(shape, move, True).Shape()

@@ -24,17 +24,17 @@ from OCP.Geom import Geom_BezierCurve
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import box, cut, cylinder, fused
 
-from workhold.files.step.edge_curves import bisected, crossing
+from workhold.files.step.edge_curves import bisect_condition, find_zero_crossing
 from workhold.files.step.enclosing import Enclosure, fold_boxes, fold_squares
-from workhold.files.step.faces import surface_of
-from workhold.files.step.heights import measures, standing
-from workhold.files.step.library import sub_shapes
-from workhold.files.step.projected import OtherCurveError, normal_height
+from workhold.files.step.faces import find_surface
+from workhold.files.step.heights import measure_outline, stand_solid
+from workhold.files.step.library import list_sub_shapes
+from workhold.files.step.projected import OtherCurveError, compute_normal_height
 
 
 def area_at(shape: Any, high: float) -> float:
     """Area in mm² of the outline of pegs as high as told, with no head room."""
-    return measures(standing(shape).outline(high, 0.0))[0]
+    return measure_outline(stand_solid(shape).make_outline(high, 0.0))[0]
 
 
 def test_lying_ring_is_seen_as_circles_and_lines() -> None:
@@ -68,9 +68,9 @@ def test_curve_of_the_border_is_found_where_it_reaches_out_little() -> None:
     """A slanted hole's ellipse is refused, also where it is a small part of what is there; one out of sight is not."""
     slanted = cylinder(4, 80, (30, 20, -20), (0.3, 0, 1))
     with pytest.raises(OtherCurveError, match="a cylinder of radius 4 mm aslant"):
-        standing(cut(box(60, 40, 20), slanted)).outline()
+        stand_solid(cut(box(60, 40, 20), slanted)).make_outline()
     hidden = fused(cut(box(60, 40, 20), slanted), box(60, 40, 5, (0, 0, -5)))
-    assert measures(standing(hidden).outline())[0] == pytest.approx(2400)
+    assert measure_outline(stand_solid(hidden).make_outline())[0] == pytest.approx(2400)
 
 
 @pytest.mark.parametrize("root", [0.1, 1 / 3, sqrt(0.5), 0.999])
@@ -84,28 +84,28 @@ def test_crossing_is_that_of_bisection(root: float, power: int) -> None:
         return float(t**power - root**power)
 
     ends = (0.0, value(0.0)), (1.0, value(1.0))
-    plain = sum(bisected(0.0, 1.0, lambda t: value(t) >= 0.0, (0.0, 1.0), 60)) / 2
+    plain = sum(bisect_condition(0.0, 1.0, lambda t: value(t) >= 0.0, (0.0, 1.0), 60)) / 2
     asked.clear()
-    assert crossing(value, *ends) == plain
+    assert find_zero_crossing(value, *ends) == plain
     assert len(asked) <= (25 if power == 1 else 80)
 
 
 def test_crossing_of_a_value_that_falls() -> None:
     """The end with the value below 0 may be the greater one."""
-    assert crossing(lambda t: 0.25 - t, (1.0, -0.75), (0.0, 0.25)) == pytest.approx(0.25, abs=1e-15)
+    assert find_zero_crossing(lambda t: 0.25 - t, (1.0, -0.75), (0.0, 0.25)) == pytest.approx(0.25, abs=1e-15)
 
 
 def test_squares_hold_a_fold_with_room_beside_it() -> None:
     """Where a free-form face stands upright lies in a square, as far inside that no rounding leads out of it."""
     ring = BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0.3, 0.2, 0.9)), 10.0, 3.0).Shape()
-    (face,) = sub_shapes(BRepBuilderAPI_NurbsConvert(ring).Shape(), "FACE")
-    surface, size, room = surface_of(face), 0.5, 0.02
+    (face,) = list_sub_shapes(BRepBuilderAPI_NurbsConvert(ring).Shape(), "FACE")
+    surface, size, room = find_surface(face), 0.5, 0.02
     squares = fold_squares(surface, size)
     u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), 241)
     v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), 241)
     missed = found = 0
     for a in u:
-        leans = [normal_height(surface, float(a), float(b)) for b in v]
+        leans = [compute_normal_height(surface, float(a), float(b)) for b in v]
         for k in range(len(v) - 1):
             if (leans[k] > 0.0) == (leans[k + 1] > 0.0):
                 continue
@@ -132,6 +132,6 @@ def test_boxes_hold_the_outline_where_two_folds_cross() -> None:
     squares = {(floor(x / size), floor(y / size)) for circle in circles for x, y in circle}
     held = Enclosure(polygons=fold_boxes(squares, size, is_there))
     border = [place for circle in circles for place in circle if not is_there(place)]
-    assert len(border) > 3000 and all(map(held.holds, border))
+    assert len(border) > 3000 and all(map(held.may_hold, border))
     # A fold at which there is nothing, as it lies below the heights that are asked about, is left out.
     assert fold_boxes({(100, 100)}, size, is_there) == []

@@ -30,9 +30,9 @@ from step_shapes import box, cut, cylinder, filleted, fused, prism
 import workhold
 from workhold import Plate, load
 from workhold.files.budget import LIMITS
-from workhold.files.step.heights import standing
-from workhold.files.step.level_faces import bottom_loops, level_tops, region
-from workhold.files.step.library import along, sub_shapes
+from workhold.files.step.heights import stand_solid
+from workhold.files.step.level_faces import find_bottom_loops, find_open_level_tops, trace_region
+from workhold.files.step.library import list_sub_shapes, turn_axis_up
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import segment_rows
@@ -90,10 +90,14 @@ def test_a_face_with_a_free_border_is_kept_and_none_of_it_is_over_air(
     shape: Any, openings: int, axis: bool
 ) -> None:
     """Beside the border of a face there is material under it; what is lost is no wider than a hair."""
-    solid = standing(along(shape, "-z" if axis else "z"))
+    solid = stand_solid(turn_axis_up(shape, "-z" if axis else "z"))
     for loops, z, below in (
-        (bottom_loops(solid), 0.0, BELOW),
-        ([loop for top in level_tops(solid) if top.height == 16.0 for loop in top.open], 16.0, -BELOW),
+        (find_bottom_loops(solid), 0.0, BELOW),
+        (
+            [loop for top in find_open_level_tops(solid) if top.height == 16.0 for loop in top.open],
+            16.0,
+            -BELOW,
+        ),
     ):
         assert loops
         exact = sum(
@@ -109,14 +113,14 @@ def test_a_face_with_a_free_border_is_kept_and_none_of_it_is_over_air(
                     (x, y), (nx, ny) = segment.at(share * segment.half_extent), segment.normal()
                     # As far below the face as beside its border, where that is: the bore leans by 45 degrees.
                     inner = x - abs(below) / 10 * nx, y - abs(below) / 10 * ny
-                    deep = solid.material.intervals(inner)
+                    deep = solid.material.find_material_intervals(inner)
                     assert any(low <= z + below / 20 <= high for low, high in deep), (z, inner, deep)
 
 
 def area_of_face(face: Any) -> float:
     """The area of a face by many points along each of its edges; the library finds it roughly with splines."""
     sizes = []
-    for wire in sub_shapes(face, "WIRE"):
+    for wire in list_sub_shapes(face, "WIRE"):
         points = []
         edges = BRepTools_WireExplorer(wire)
         while edges.More():
@@ -169,15 +173,15 @@ def test_no_level_face_on_top_is_no_top_clamp(tmp_path: Path) -> None:
     kept = workhold.open(tmp_path / "r.json").workpiece.solid
     assert kept is not None and kept.top == () and kept.bottom == part.solid.bottom
     form = WorkpieceForm.model_validate(workpiece_request(part))
-    asked = form.workpiece(1000).solid
+    asked = form.to_workpiece(1000).solid
     assert asked is not None and asked.top == ()
 
 
 def workpiece_request(part: Any) -> dict[str, Any]:
     """A part as the page sends it."""
-    from workhold.presenting.data import solid_data
+    from workhold.presenting.data import describe_solid
 
-    sent = {"name": part.name, "loops": [loop.tolist() for loop in part.loops], **solid_data(part.solid)}
+    sent = {"name": part.name, "loops": [loop.tolist() for loop in part.loops], **describe_solid(part.solid)}
     asked: dict[str, Any] = json.loads(json.dumps(sent))
     return asked
 
@@ -193,8 +197,8 @@ def test_without_a_face_there_is_room_nowhere() -> None:
 def test_a_tangent_polygon_holds_its_ellipse() -> None:
     """No vertex of an opening lies within the ellipse that it stands for, and none far from it."""
     lean = 35 * pi / 180
-    solid = standing(bored_aslant(40, 35))
-    (top,) = level_tops(solid)
+    solid = stand_solid(bored_aslant(40, 35))
+    (top,) = find_open_level_tops(solid)
     (opening,) = [loop for loop in top.open if compute_signed_area(loop_segments(loop)) < 0]
     middle = 40 + 8 * sin(lean) / cos(lean)
     for x, y, bulge in opening.tolist():
@@ -204,7 +208,7 @@ def test_a_tangent_polygon_holds_its_ellipse() -> None:
 
 def test_line_within_a_face_bounds_nothing() -> None:
     touching = fused(box(70, 50, 12), cylinder(6, 50, (35, 25, 6), (1, 0, 0)))
-    (top,) = [one for one in level_tops(standing(touching)) if one.height == 12.0]
+    (top,) = [one for one in find_open_level_tops(stand_solid(touching)) if one.height == 12.0]
     assert area(top.open) == pytest.approx(3500.0)
 
 
@@ -212,7 +216,7 @@ def test_faces_that_are_level_with_each_other_but_for_rounding_hide_nothing_of_e
     """Beside a boss one half of a plate is higher by 4e-6 mm: both are open, and neither rises above the other."""
     stepped = cut(box(60, 40, 20 + 4e-6), box(40, 60, 5, (-10, -5, 20)))
     plate = fused(stepped, box(10, 10, 30, (5, 5, 0)))
-    tops = level_tops(standing(plate))
+    tops = find_open_level_tops(stand_solid(plate))
     assert [(round(top.height, 4), area(top.open), area(top.rising)) for top in tops] == [
         (20.0, pytest.approx(2300.0), pytest.approx(100.0)),
         (30.0, pytest.approx(100.0), 0.0),
@@ -224,10 +228,10 @@ def test_what_lies_but_for_rounding_hangs_not_and_what_only_runs_into_the_plane_
     uneven = cut(
         box(60, 40, 20), box(30, 40, 10, (0, 0, 4e-6 - 10)), cylinder(4, 100, (45, -20, 10), (0, 1, 0))
     )
-    (top,) = level_tops(standing(uneven))
+    (top,) = find_open_level_tops(stand_solid(uneven))
     assert (area(top.open), area(top.hanging)) == (pytest.approx(2400.0), pytest.approx(8 * 40.0))
     rounded = filleted(box(60, 40, 20), 5, lambda low, high: max(high[0], high[2]) < 1e-6)
-    (top,) = level_tops(standing(rounded))
+    (top,) = find_open_level_tops(stand_solid(rounded))
     assert (area(top.open), area(top.hanging)) == (pytest.approx(2400.0), pytest.approx(5 * 40.0))
 
 
@@ -242,7 +246,7 @@ def test_a_loop_around_nearly_nothing_is_no_part_of_a_region() -> None:
         )
     ]
     rows = segment_rows([segment for one in square for segment in one])
-    loops = region(
+    loops = trace_region(
         [segment for one in square for segment in one], lambda point: bool(is_inside(*point, rows))
     )
     assert [area([loop]) for loop in loops] == pytest.approx([100.0, 1e-4])
@@ -264,20 +268,20 @@ def tilted_rings(count: int) -> Any:
 def test_what_rises_over_a_plate_is_no_part_of_its_top_however_it_is_shaped() -> None:
     """By the library's own measure: over no place of the open part is there anything, with rings in many pieces."""
     shape = tilted_rings(2)
-    (top,) = (one for one in level_tops(standing(shape)) if one.height == pytest.approx(20.0))
+    (top,) = (one for one in find_open_level_tops(stand_solid(shape)) if one.height == pytest.approx(20.0))
     assert 0.5 * 100 * 60 < area(top.open) < 100 * 60
     rows = segment_rows([segment for loop in top.open for segment in loop_segments(loop)])
     taken = 0
     for x, y in np.random.default_rng(3).uniform((0, 0), (100, 60), (60, 2)).tolist():
         if is_inside(x, y, rows):
             common = BRepAlgoAPI_Common(box(0.002, 0.002, 20, at=(x, y, 20.001)), shape)
-            taken += sub_shapes(common.Shape(), "SOLID") != []
+            taken += list_sub_shapes(common.Shape(), "SOLID") != []
     assert taken == 0
 
 
 def test_places_asked_are_bounded_and_nothing_is_open_beyond(monkeypatch: pytest.MonkeyPatch) -> None:
     """A count and no clock, so that every machine finds the same; what is not decided is no place for a clamp."""
-    solid = standing(tilted_rings(1))
-    assert level_tops(solid)
+    solid = stand_solid(tilted_rings(1))
+    assert find_open_level_tops(solid)
     monkeypatch.setitem(LIMITS, "tops", evolve(LIMITS["tops"], most_elements=50))
-    assert level_tops(solid) == []
+    assert find_open_level_tops(solid) == []

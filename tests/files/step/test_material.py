@@ -14,8 +14,8 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCone, BRepPrimAPI_MakeSphere
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 from step_shapes import at_height, box, chamfered, cut, cylinder, filleted, fused, upright
 
-from workhold.files.step.edge_curves import edge_curves
-from workhold.files.step.faces import solid_faces
+from workhold.files.step.edge_curves import list_edge_curves
+from workhold.files.step.faces import list_solid_faces
 from workhold.files.step.material import Material, PlaneFaces
 
 CONE = BRepPrimAPI_MakeCone(gp_Ax2(gp_Pnt(20, 12, 8), gp_Dir(0, 0, 1)), 9.0, 4.0, 14.0).Shape()
@@ -35,11 +35,11 @@ SOLIDS = {
 def test_intervals_are_where_the_library_finds_material(name: str) -> None:
     """At random points and heights a solid has material just where an interval of its upright line says so."""
     shape: Any = SOLIDS[name]
-    faces = solid_faces(shape)
-    material = Material(shape, faces, edge_curves(faces))
+    faces = list_solid_faces(shape)
+    material = Material(shape, faces, list_edge_curves(faces))
     random = np.random.default_rng(7)
     for x, y, z in random.uniform((-2.0, -2.0, -1.0), (62.0, 42.0, 24.0), (400, 3)).tolist():
-        inside = any(low < z < high for low, high in material.intervals((x, y)))
+        inside = any(low < z < high for low, high in material.find_material_intervals((x, y)))
         assert inside == material.is_inside((x, y), z), (x, y, z)
 
 
@@ -62,9 +62,9 @@ def test_upright_cones_are_met_where_the_library_meets_them(name: str) -> None:
     from OCP.gp import gp_Lin
     from OCP.IntCurvesFace import IntCurvesFace_Intersector
 
-    faces = [face for face in solid_faces(CONES[name]) if face.kind == "cone"]
-    edges = edge_curves(faces)
-    flat, others = PlaneFaces.of(faces, edges)
+    faces = [face for face in list_solid_faces(CONES[name]) if face.kind == "cone"]
+    edges = list_edge_curves(faces)
+    flat, others = PlaneFaces.from_faces(faces, edges)
     assert bool(others) == (name == "one cut aslant")
     random = np.random.default_rng(5)
     met = 0
@@ -75,7 +75,9 @@ def test_upright_cones_are_met_where_the_library_meets_them(name: str) -> None:
             asked.Perform(gp_Lin(gp_Pnt(*point, -9.0), gp_Dir(0.0, 0.0, 1.0)), -1.0, 1e3)
             found += [asked.WParameter(k) - 9.0 for k in range(1, asked.NbPnt() + 1)]
         if not others:
-            assert sorted(flat.heights(tuple(point))) == pytest.approx(sorted(found), abs=1e-9), point
+            assert sorted(flat.find_crossing_heights(tuple(point))) == pytest.approx(
+                sorted(found), abs=1e-9
+            ), point
         met += len(found)
     assert met > 20
 
@@ -90,9 +92,9 @@ def beside(edges: Any, random: np.random.Generator) -> list[list[float]]:
 def test_faces_met_twice_or_not_at_all(monkeypatch: pytest.MonkeyPatch, passed: list[float]) -> None:
     """Where a line meets two neighbours on their edge, or a face too much, each range is asked for by itself."""
     shape: Any = box(60, 40, 14)
-    faces = solid_faces(shape)
-    monkeypatch.setattr(Material, "heights", lambda self, point, near: passed)
-    intervals = Material(shape, faces, edge_curves(faces)).intervals((30.0, 20.0))
+    faces = list_solid_faces(shape)
+    monkeypatch.setattr(Material, "find_crossing_heights", lambda self, point, near: passed)
+    intervals = Material(shape, faces, list_edge_curves(faces)).find_material_intervals((30.0, 20.0))
     assert (intervals[0][0], intervals[-1][1]) == (0.0, 14.0)
     assert all(a[1] == b[0] for a, b in pairwise(intervals))
 
@@ -105,6 +107,6 @@ def test_inside_of_a_border_is_found_at_the_heights_of_its_corners() -> None:
     planes, boxes = np.array([(7.0, 0.5, 0.0, 0.0, 0.0, 0.0)]), np.array([(0.0, 0.0, 30.0, 20.0)])
     border = PlaneFaces(planes, np.array(lines), np.array([0, 4]), arcs, np.array([0, 1]), boxes)
     for x, y in [(5.0, 10.0), (14.9, 10.0), (25.1, 10.0), (20.0, 4.9), (1e-3, 1e-3)]:
-        assert border.heights((x, y)) == [7.0 + 0.5 * x]
+        assert border.find_crossing_heights((x, y)) == [7.0 + 0.5 * x]
     for point in [(20.0, 10.0), (24.9, 10.0), (-1.0, 0.0), (31.0, 20.0), (31.0, 10.0)]:
-        assert border.heights(point) == []
+        assert border.find_crossing_heights(point) == []

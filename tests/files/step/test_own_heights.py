@@ -15,7 +15,7 @@ import workhold
 from glb_reading import fixture_glb, read_glb
 from solid_truth import fixture_faults, off_region, section_points, segments_of
 from workhold import Fence, FlatJaw, InputError, Plate, Vise, design, load
-from workhold.files.step.heights import standing
+from workhold.files.step.heights import stand_solid
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import segment_rows
 
@@ -118,8 +118,8 @@ def test_what_cannot_be_met_is_refused_with_the_carrier(tmp_path: Path) -> None:
 
 def test_the_band_jumps_where_an_opening_reaches_below_the_carrier() -> None:
     """Beside a hole across a wall a tip presses over all of the wall, and over the hole above it."""
-    solid = standing(cut(box(60, 30, 30), cylinder(4, 60, (30, -5, 10), (0, 1, 0))))
-    strips = solid.outline(20.0, low=8.0).loops[0]
+    solid = stand_solid(cut(box(60, 30, 30), cylinder(4, 60, (30, -5, 10), (0, 1, 0))))
+    strips = solid.make_outline(20.0, low=8.0).loops[0]
     wall = sorted((strip.start[0], strip.band) for strip in strips if strip.start[1] == strip.end[1] == 0.0)
     assert wall == [
         (pytest.approx(0.0), pytest.approx((8.0, 20.0), abs=1e-6)),

@@ -16,7 +16,7 @@ from files.step_shapes import at_height, box, cut, cylinder, filleted, fused, wr
 from glb_reading import read_glb
 from workhold import Result, Vise, design, load
 from workhold.errors import InputError
-from workhold.files.step.part_shape import part_shape
+from workhold.files.step.part_shape import make_part_shape
 
 VISE = Vise(pitch=10, columns=8, peg_radius=3)
 BORE = cylinder(8, 50, (60, 30, -5))
@@ -53,9 +53,9 @@ def test_the_shape_stands_where_the_pegs_touch_it(result: Result, part: Path, tm
     (own, *others) = read_glb((tmp_path / "a.glb").read_bytes())[1]
     own.assert_closed()
     assert own.volume == pytest.approx(solid, rel=3e-3) and own.kind == "part" and len(others) == 6
-    from workhold.files.step.library import bounding_box
+    from workhold.files.step.library import compute_bounding_box
 
-    low, high = bounding_box(bodies[0][2])
+    low, high = compute_bounding_box(bodies[0][2])
     assert np.allclose(own.positions.min(axis=0), low, atol=0.06)
     assert np.allclose(own.positions.max(axis=0), high, atol=0.06)
 
@@ -87,7 +87,7 @@ def test_another_part_is_refused(result: Result, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"none\.step: "):
         result[0].save_glb(tmp_path / "a.glb", part=tmp_path / "none.step")
     with pytest.raises(InputError, match="was not read from a solid"):
-        part_shape(b"", load("widget"))
+        make_part_shape(b"", load("widget"))
     with pytest.raises(InputError, match=r"a\.pdf has no shape of the part"):
         result[0].save_sheet(tmp_path / "a.pdf", part=path)
     assert not (tmp_path / "a.glb").exists()

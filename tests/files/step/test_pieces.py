@@ -33,11 +33,11 @@ from workhold import (
 )
 from workhold import open as workhold_open
 from workhold.algebra import find_fixtures_by_algebra
-from workhold.cli.tables import face_table
+from workhold.cli.tables import tabulate_faces
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.step.heights import standing
-from workhold.files.step.writer import setup_step
+from workhold.files.step.heights import stand_solid
+from workhold.files.step.writer import make_setup_step
 from workhold.model.bodies import list_fixture_bodies
 from workhold.model.own_outlines import measure_outline_diameter
 from workhold.model.setup import find_hole_centers
@@ -89,7 +89,7 @@ def test_fixtures_hold_pieces(feet: Workpiece, eyes: Workpiece, toolkit: Any, tm
     listed = 0
     for shape, part in ((bridge(), feet), (bell_crank(), eyes)):
         result = design(part, toolkit, best=6)
-        solid = standing(shape).shape
+        solid = stand_solid(shape).shape
         assert [fault for one in result for fault in fixture_faults(solid, part, one, toolkit)] == []
         save(result, tmp_path / "result.json")
         again = workhold_open(tmp_path / "result.json")
@@ -144,7 +144,7 @@ def test_bodies_of_pieces(feet: Workpiece) -> None:
     fixture = design(feet, toolkit, best=1)[0]
     slabs = list_fixture_bodies(fixture, feet, toolkit)[0].slabs
     assert sorted(len(slab.holes) for slab in slabs) == [0, 1]
-    written = setup_step(fixture, feet, toolkit)
+    written = make_setup_step(fixture, feet, toolkit)
     assert written.count(b"MANIFOLD_SOLID_BREP(") == 2 + 4 + 2
     assert b"bridge piece 2" in written
 
@@ -206,5 +206,5 @@ def test_remark_names_the_pieces(tmp_path: Path) -> None:
 
 def test_the_table_of_faces_names_pieces_and_holes(feet: Workpiece) -> None:
     """Of a part in pieces each outer loop is a piece; holes are counted from 1 after these."""
-    where = {row[3] for row in face_table(feet).rows}
+    where = {row[3] for row in tabulate_faces(feet).rows}
     assert where == {"piece 1", "piece 2", "hole 1"}

@@ -11,7 +11,7 @@ pytest.importorskip("OCP", reason="the extra 'step' is not installed")
 from workhold import Vise
 from workhold.errors import InputError
 from workhold.files.step.solids import read_solids
-from workhold.files.step.writer import plates_step
+from workhold.files.step.writer import make_plates_step
 from workhold.model.dowels import Bolts, list_jaw_plates
 
 PLATES = list_jaw_plates(
@@ -23,8 +23,8 @@ PLATES = list_jaw_plates(
 
 def test_volumes_are_those_of_drilled_plates() -> None:
     """A box of 30 by 48 by 8 mm less twelve dowel holes and two bolt holes, its upper side at z = 0."""
-    content = plates_step(PLATES, 8.0)
-    assert content == plates_step(PLATES, 8.0)
+    content = make_plates_step(PLATES, 8.0)
+    assert content == make_plates_step(PLATES, 8.0)
     expected = 8 * (30 * 48 - 12 * pi * 3.005**2 - 2 * pi * 4)
     solids = read_solids(content)
     assert [solid.volume for solid in solids] == pytest.approx([expected] * 2, rel=1e-9)
@@ -35,4 +35,4 @@ def test_volumes_are_those_of_drilled_plates() -> None:
 def test_a_plate_has_a_thickness() -> None:
     """None below zero."""
     with pytest.raises(InputError, match="thickness -1"):
-        plates_step(PLATES, -1.0)
+        make_plates_step(PLATES, -1.0)

@@ -30,8 +30,8 @@ from step_shapes import (
     cylinder,
     filleted,
     fused,
+    list_sub_shapes,
     prism,
-    sub_shapes,
     upright,
     write_step,
 )
@@ -42,7 +42,7 @@ from workhold.files.outline.curves import CurveReader
 from workhold.files.part.load import Loaded, read_workpiece
 from workhold.files.part.loaded import from_drawing
 from workhold.files.step.reader import read_step_apart, refuse_missing_volume
-from workhold.files.step.regions import edge_piece
+from workhold.files.step.regions import make_edge_piece
 from workhold.geometry.segment import Arc, Line
 
 
@@ -196,7 +196,7 @@ def test_a_rounded_rib_reaches_out_by_its_radius(tmp_path: Path) -> None:
 def test_a_circle_may_look_either_way(up: int) -> None:
     """A quarter circle about an axis that points down runs clockwise seen from above."""
     circle = gp_Circ(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, up), gp_Dir(1, 0, 0)), 5)
-    piece = edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge(), CurveReader(None), "edge")
+    piece = make_edge_piece(BRepBuilderAPI_MakeEdge(circle, 0, pi / 2).Edge(), CurveReader(None), "edge")
     assert piece is not None
     assert piece[1] == pytest.approx([up * tan(pi / 8)])
     assert np.array(piece[0]) == pytest.approx(np.array([(5, 0), (0, 5 * up)]), abs=1e-12)
@@ -386,7 +386,7 @@ def test_a_silhouette_of_ellipses_is_refused_with_a_remedy(tmp_path: Path) -> No
 
 def test_surfaces_without_a_solid_are_refused(tmp_path: Path) -> None:
     """The faces of a box are no part."""
-    assert "surfaces (6) but no solid" in refusal(tmp_path, sub_shapes(box(1, 1, 1), "SHELL")[0])
+    assert "surfaces (6) but no solid" in refusal(tmp_path, list_sub_shapes(box(1, 1, 1), "SHELL")[0])
 
 
 @pytest.mark.parametrize(

@@ -28,7 +28,7 @@ from files.step_bodies import named_bodies
 from workhold import Fixture, Peg, Pose, Vise, Workpiece, design
 from workhold.errors import InputError
 from workhold.files.step.solids import Solid, read_solids
-from workhold.files.step.writer import setup_step, write_setup_step
+from workhold.files.step.writer import make_setup_step, write_setup_step
 from workhold.model.setup import part_zero
 
 VISE = Vise(pitch=(10, 12), columns=2, peg_radius=3, row_offset=2.5)
@@ -67,7 +67,9 @@ POSES = [Pose(0.0, 0.0, 0.0), Pose(123.4, 31.7, -8.9)]
 def bodies(pose: Pose) -> dict[str, list[Solid]]:
     """The solids of a set-up as read again: the part, pegs and plates, told apart by where they lie in z."""
     kinds: dict[str, list[Solid]] = {"part": [], "peg": [], "plate": []}
-    for solid in read_solids(setup_step(fixture(pose), part(pose), VISE, thickness=12, plate_thickness=8)):
+    for solid in read_solids(
+        make_setup_step(fixture(pose), part(pose), VISE, thickness=12, plate_thickness=8)
+    ):
         low, high = round(solid.low[2], 9), round(solid.high[2], 9)
         kinds[{(0, 12): "part", (-8, 12): "peg", (-8, 0): "plate"}[low, high]].append(solid)
     return kinds
@@ -114,7 +116,7 @@ def test_pegs_stand_in_holes_of_the_plates(pose: Pose) -> None:
 
 def test_bodies_are_named_by_what_they_are() -> None:
     """The part by its name, pegs by their holes, plates by their jaws; lengths are millimetres."""
-    text = setup_step(fixture(POSES[1]), part(POSES[1], "Joe's bracket"), VISE).decode()
+    text = make_setup_step(fixture(POSES[1]), part(POSES[1], "Joe's bracket"), VISE).decode()
     names = re.findall(r"PRODUCT\('((?:[^']|'')*)'", text)
     pegs = ["peg L-A1", "peg L-A3", "peg R-B1", "peg R-B3"]
     assert names == [
@@ -133,7 +135,7 @@ def test_part_zero_stands_where_it_was_asked_for(pose: Pose) -> None:
     """The three ends of its axes: the centre of the hole, a pitch along the part's x and half of one along its y."""
     zero = part_zero(part(pose), "hole 1")
     reader = STEPControl_Reader()
-    reader.ReadStream("zero.step", BytesIO(setup_step(fixture(pose), part(pose), VISE, zero=zero)))
+    reader.ReadStream("zero.step", BytesIO(make_setup_step(fixture(pose), part(pose), VISE, zero=zero)))
     reader.TransferRoots()
     shape = reader.OneShape()
     loose, ends = TopExp_Explorer(shape, TopAbs_VERTEX, TopAbs_FACE), set()
@@ -148,7 +150,9 @@ def test_part_zero_stands_where_it_was_asked_for(pose: Pose) -> None:
 
 def test_pegs_are_as_long_as_asked_for() -> None:
     """Pegs 15 mm long that stand 6 mm out of the plates."""
-    solids = read_solids(setup_step(fixture(POSES[0]), part(POSES[0]), VISE, peg_length=15, peg_height=6))
+    solids = read_solids(
+        make_setup_step(fixture(POSES[0]), part(POSES[0]), VISE, peg_length=15, peg_height=6)
+    )
     heights = [(round(solid.low[2], 9), round(solid.high[2], 9)) for solid in solids]
     assert heights.count((-9.0, 6.0)) == 4
 
@@ -164,7 +168,7 @@ def test_the_same_set_up_gives_the_same_bytes(tmp_path: Path) -> None:
 
 def test_plates_of_a_nearly_closed_vise_do_not_overlap() -> None:
     """With a jaw separation below two radii the plates end inside their holes, and apart from each other."""
-    solids = read_solids(setup_step(fixture(POSES[0], 4.0), part(POSES[0]), VISE))
+    solids = read_solids(make_setup_step(fixture(POSES[0], 4.0), part(POSES[0]), VISE))
     left, right = sorted((s for s in solids if s.high[2] < 1e-9), key=lambda plate: plate.low[0])
     assert left.high[0] < right.low[0]
     assert left.volume < 10 * (left.high[0] - left.low[0]) * (left.high[1] - left.low[1]) - 10 * pi * 9
@@ -182,7 +186,7 @@ def test_plates_of_a_nearly_closed_vise_do_not_overlap() -> None:
 def test_what_has_no_body_is_refused(radius: float, options: dict[str, float], said: str) -> None:
     """Points for pegs, and bodies of no thickness."""
     with pytest.raises(InputError, match=said):
-        setup_step(fixture(POSES[0]), part(POSES[0]), attrs.evolve(VISE, peg_radius=radius), **options)
+        make_setup_step(fixture(POSES[0]), part(POSES[0]), attrs.evolve(VISE, peg_radius=radius), **options)
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -190,7 +194,7 @@ def test_what_has_no_body_is_refused(radius: float, options: dict[str, float], s
 def test_a_plate_has_its_locators_and_its_clamp(way: str, bolted: bool) -> None:
     """One plate, three dowels through it, the clamp's body on it, which touches the part and enters nothing, its bolt."""
     fixture, workpiece, plate = on_plate(way, bolted)
-    text = setup_step(fixture, workpiece, plate, thickness=12, plate_thickness=8)
+    text = make_setup_step(fixture, workpiece, plate, thickness=12, plate_thickness=8)
     named = re.findall(r"PRODUCT\('((?:[^']|'')*)'", text.decode())
     dowels = [f"locator {peg.hole}" for peg in fixture.pegs[:3]]
     tip = fixture.pegs[3]
@@ -217,7 +221,7 @@ def test_pegs_with_flats_are_round_in_their_holes_and_flat_on_the_part() -> None
     block = Workpiece.from_loops("block", [[[0, 0, 0], [40, 6, 0], [34, 36, 0], [-4, 30, 0]]])
     held = design(block, vise, best=1)[0]
     assert all(peg.flat_deg is not None for peg in held.pegs)
-    solids = read_solids(setup_step(held, block, vise, thickness=10, plate_thickness=7))
+    solids = read_solids(make_setup_step(held, block, vise, thickness=10, plate_thickness=7))
     pegs = [solid for solid in solids if (round(solid.low[2], 6), round(solid.high[2], 6)) == (-7, 10)]
     (lying,) = [solid for solid in solids if (round(solid.low[2], 6), round(solid.high[2], 6)) == (0, 10)]
     cut = 2.5**2 * acos(1.5 / 2.5) - 1.5 * sqrt(2.5**2 - 1.5**2)
@@ -231,5 +235,5 @@ def test_pegs_with_flats_are_round_in_their_holes_and_flat_on_the_part() -> None
 
 def test_bodies_have_the_colours_of_their_kinds() -> None:
     """Read again by the library: each solid has its kind's colour, as on a screen."""
-    seen = [kind for _, kind, _ in named_bodies(setup_step(fixture(POSES[1]), part(POSES[1]), VISE))]
+    seen = [kind for _, kind, _ in named_bodies(make_setup_step(fixture(POSES[1]), part(POSES[1]), VISE))]
     assert seen == ["part", *["peg"] * 4, *["plate"] * 2]

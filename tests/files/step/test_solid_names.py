@@ -22,8 +22,8 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from step_shapes import box, write_step
 
 from workhold import InputError, load, solids_in
-from workhold.files.part.survey import survey
-from workhold.files.step.solids import name_of, shown_name
+from workhold.files.part.survey import survey_part_file
+from workhold.files.step.solids import clean_name, name_of
 
 BOXES = (box(60, 40, 10), box(20, 20, 5, (0, 0, 20)), box(12, 10, 5, (30, 0, 20)), box(8, 5, 5, (45, 0, 20)))
 
@@ -141,24 +141,24 @@ def test_names_that_choose_nothing_are_refused(tmp_path: Path) -> None:
 def test_the_solids_are_told_with_what_is_read_and_with_what_is_not(tmp_path: Path) -> None:
     """A survey has them where the part is read and where it is refused; a remark names the first."""
     path = bodies(tmp_path / "part.step", "base plate", "lug", "", "eye")
-    seen = survey(path)
+    seen = survey_part_file(path)
     assert seen.loaded is not None
     assert [solid.name for solid in seen.solids] == ["base plate", "lug", "", "eye"]
     assert "solid 1, base plate, is 60 x 40 x 10 mm at (0, 0, 0); solid 2, lug, is" in seen.loaded.remarks[0]
     assert "solid 3 is 12 x 10 x 5 mm" in seen.loaded.remarks[0]
-    refused = survey(path, part_number="spoon")
+    refused = survey_part_file(path, part_number="spoon")
     assert refused.loaded is None and refused.solids == seen.solids
 
 
 def test_names_are_made_fit_to_be_shown() -> None:
     """Of one line, without letters that steer a terminal, and not too long."""
-    assert shown_name("a\x1b[31m\nb") == "a?[31m b"
-    assert len(shown_name("x" * 500)) <= 80
+    assert clean_name("a\x1b[31m\nb") == "a?[31m b"
+    assert len(clean_name("x" * 500)) <= 80
     assert [
-        shown_name(name)
+        clean_name(name)
         for name in ("=>[0:1:1:3]", "SOLID", "NAUO12", "7", "Open CASCADE STEP translator 8.0 1")
     ] == [""] * 5
-    assert shown_name("Solid base") == "Solid base"
+    assert clean_name("Solid base") == "Solid base"
 
 
 def test_the_nearest_name_is_taken() -> None:

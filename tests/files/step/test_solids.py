@@ -17,8 +17,8 @@ from step_shapes import cut, cylinder, filleted, upright, write_step
 from solid_examples import EXAMPLES, SolidExample, polygon
 from solid_truth import border_faults, fixture_faults, off_region, section_faults, segments_of
 from workhold import Fence, FlatJaw, Plate, Vise, Workpiece, design, load
-from workhold.files.step.heights import StandingSolid, standing
-from workhold.files.step.library import along
+from workhold.files.step.heights import StandingSolid, stand_solid
+from workhold.files.step.library import turn_axis_up
 from workhold.geometry.segment import segment_rows
 
 QUICK = ("bearing housing", "rounded top", "casting", "dovetail")
@@ -43,7 +43,9 @@ def examples(quick: tuple[str, ...] = QUICK) -> list[Any]:
 
 def outline(solid: StandingSolid, high: float) -> Loops:
     """Loops of U(-inf, high)."""
-    return [np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in solid.border(-np.inf, high)]
+    return [
+        np.array([(*piece.start, piece.bulge) for piece in loop]) for loop in solid.find_border(-np.inf, high)
+    ]
 
 
 @pytest.mark.parametrize("example", examples())
@@ -52,7 +54,7 @@ def test_sections_lie_in_the_outline_and_make_it(example: SolidExample) -> None:
 
     A point of U that is no section's would be enclosed by border over which nothing is.
     """
-    solid = standing(example.make())
+    solid = stand_solid(example.make())
     before: Loops = []
     for high in (*example.heights, solid.height):
         loops = outline(solid, high)
@@ -69,7 +71,7 @@ def test_sections_lie_in_the_outline_and_make_it(example: SolidExample) -> None:
 @pytest.mark.parametrize("example", examples(("filleted foot", "extrusion", "casting")))
 def test_pegs_touch_over_their_bands_and_enter_nowhere(example: SolidExample) -> None:
     """Of every kind of toolkit, the pegs, tips and walls of each fixture as bodies against the solid."""
-    solid = standing(example.make())
+    solid = stand_solid(example.make())
     for high in example.heights:
         part = load(solid.shape, name=example.name, peg_height=high)
         for toolkit in KITS:
@@ -87,11 +89,11 @@ def touchable(part: Workpiece, toolkit: Any) -> bool:
 @pytest.mark.parametrize("example", examples())
 def test_turned_over_twice(example: SolidExample) -> None:
     """Axis z, then -z twice, has the same outline and bands; the silhouette is the same from both sides, mirrored."""
-    solid = standing(example.make())
-    twice = standing(along(along(solid.shape, "-z"), "-z"))
+    solid = stand_solid(example.make())
+    twice = stand_solid(turn_axis_up(turn_axis_up(solid.shape, "-z"), "-z"))
     for high in example.heights:
-        assert same_strips(solid.outline(high), twice.outline(high))
-    over = standing(along(solid.shape, "-z"))
+        assert same_strips(solid.make_outline(high), twice.make_outline(high))
+    over = stand_solid(turn_axis_up(solid.shape, "-z"))
     mirrored = [loop * np.array([-1.0, 1.0, 1.0]) for loop in outline(over, over.height)]
     rows = segment_rows(segments_of(outline(solid, solid.height)))
     points = np.concatenate([loop[:, :2] for loop in mirrored])
@@ -220,7 +222,7 @@ def example_named(name: str) -> Any:
 
 def test_band_jumps_where_an_opening_reaches_over_the_pegs() -> None:
     """Over a hole of radius 5 across the wall the band ends below it, and is half as long as the longest run."""
-    strips = standing(example_named("cross drilled")).outline(12.0).loops[0]
+    strips = stand_solid(example_named("cross drilled")).make_outline(12.0).loops[0]
     wall = sorted((strip.start[1], strip.band) for strip in strips if strip.start[0] == strip.end[0] == 60.0)
     assert wall == [
         (0.0, pytest.approx((0.0, 12.0), abs=1e-9)),
@@ -233,6 +235,6 @@ def test_band_jumps_where_an_opening_reaches_over_the_pegs() -> None:
 
 def test_whole_circles_have_their_bands_wherever_they_begin() -> None:
     """Each bore of a bell crank is a wall over all heights of low pegs."""
-    outline = standing(example_named("bell crank")).outline(3.0)
+    outline = stand_solid(example_named("bell crank")).make_outline(3.0)
     assert all(strip.band is not None for loop in outline.loops for strip in loop)
     assert len(outline.loops) == 6

@@ -40,7 +40,7 @@ def on_face(result: Result, at: tuple[float, float], tip_radius: float = 5.0) ->
 def assembled(chosen: ChosenSupports) -> Assembly:
     """The bodies of a set-up on chosen supports."""
     fixture = chosen.supports.fixture
-    return Assembly.of(fixture, fixture.listing.result, {}, chosen)
+    return Assembly.from_fixture(fixture, fixture.listing.result, {}, chosen)
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def assembled(chosen: ChosenSupports) -> Assembly:
 def test_no_body_is_inside_another(result: Result, at: tuple[float, float], tip: float, room: float) -> None:
     """Above a lower face the part has room for the clamp: a well, or all where the tip reaches to its border."""
     chosen = on_face(result, at, tip)
-    bodies = named_bodies(assembled(chosen).content(".step"))
+    bodies = named_bodies(assembled(chosen).make_file_content(".step"))
     assert_apart(bodies)
     assert [body[:2] for body in bodies] == [
         ("stepped", "part"),
@@ -72,7 +72,7 @@ def test_python_writes_supports_into_step_and_sheets(result: Result, tmp_path: P
     found = chosen.supports
     for name in ("a.step", "a.svg"):
         found.fixture.save_sheet(tmp_path / name, supports=found)
-    assert (tmp_path / "a.step").read_bytes() == assembled(chosen).content(".step")
+    assert (tmp_path / "a.step").read_bytes() == assembled(chosen).make_file_content(".step")
     assert "clamp" in (tmp_path / "a.svg").read_text(encoding="utf-8").lower()
     with pytest.raises(InputError, match=r"a\.dxf has no supports: let the name end in"):
         found.fixture.save_sheet(tmp_path / "a.dxf", supports=found)

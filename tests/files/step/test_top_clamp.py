@@ -39,10 +39,10 @@ from top_examples import (
 )
 from workhold import Plate, load
 from workhold.drawing import SheetDetails
-from workhold.drawing.sheet_writing import heights_of
-from workhold.files.step.heights import standing
-from workhold.files.step.level_faces import LevelTop, level_tops
-from workhold.files.step.library import along
+from workhold.drawing.sheet_writing import find_sheet_heights
+from workhold.files.step.heights import stand_solid
+from workhold.files.step.level_faces import LevelTop, find_open_level_tops
+from workhold.files.step.library import turn_axis_up
 from workhold.files.supports_file import read_supports, write_supports
 from workhold.fixels.support_hardware import TopClamp
 from workhold.geometry.segment import segment_rows
@@ -124,24 +124,24 @@ def sky_faults(shape: Any, tops: list[LevelTop], count: int, seed: int) -> list[
 @pytest.mark.parametrize("axis", ["z", "-z", "x"])
 def test_faces_count_as_far_as_they_are_open_to_the_sky(make: Callable[[], Any], axis: str) -> None:
     """Nothing of them is dropped, and nothing is taken that has anything above it or is not flat."""
-    solid = standing(along(make(), axis))
-    tops = level_tops(solid)
+    solid = stand_solid(turn_axis_up(make(), axis))
+    tops = find_open_level_tops(solid)
     assert tops and sky_faults(solid.shape, tops, 150, 3) == []
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda one: one.name)
 def test_so_do_those_of_all_solids(example: Any) -> None:
     """Fillets that run out into a face, cones, lying bores and slots among them."""
-    solid = standing(example.make())
-    tops = level_tops(solid)
+    solid = stand_solid(example.make())
+    tops = find_open_level_tops(solid)
     assert tops or example.name in ("slanted", "lying shaft")
     assert not tops or sky_faults(solid.shape, tops, 100, 5) == []
 
 
 def test_half_of_a_foot_under_a_round_arm_is_half_open() -> None:
     """By hand: the foot less the post, the arm and the half disc at its end."""
-    solid = standing(overhang())
-    (foot,) = [top for top in level_tops(solid) if top.height == 15.0]
+    solid = stand_solid(overhang())
+    (foot,) = [top for top in find_open_level_tops(solid) if top.height == 15.0]
     size = sum(abs_area(loop) for loop in foot.open[:1]) - sum(abs_area(loop) for loop in foot.open[1:])
     assert size == pytest.approx(100 * 60 - 20 * 60 - 20 * 30 - np.pi * 15**2 / 2, abs=1e-6)
 
@@ -156,8 +156,8 @@ def abs_area(loop: Any) -> float:
 def test_what_a_pipe_aslant_covers_is_off_within_a_hair() -> None:
     """Its ends over the plate are ellipses: the enclosure takes nothing that is farther away, and leaves none."""
     shape = fused(box(90, 60, 10), box(10, 60, 50), cylinder(7, 60, (5, 30, 20), (1, 0.2, 0.5)))
-    solid = standing(shape)
-    tops = level_tops(solid)
+    solid = stand_solid(shape)
+    tops = find_open_level_tops(solid)
     assert {top.height for top in tops} >= {10.0, 50.0}
     assert sky_faults(solid.shape, tops, 300, 7) == []
 
@@ -335,11 +335,11 @@ def test_pegs_press_over_their_own_runs_with_supports_and_without() -> None:
     chosen = ChosenSupports.of(found)
     plain = SheetDetails(number=1, count=1, day="", result_hash="", version="")
     for details in (plain, evolve(plain, supports=chosen)):
-        heights = heights_of(fixture, part, TOOLKIT, details)
+        heights = find_sheet_heights(fixture, part, TOOLKIT, details)
         assert heights is not None
         own = [pressed_by(peg, fixture, part.numbered) for peg in fixture.pegs]
         assert list(heights.bands) == own and all(band == (0.0, 18.0) for band in own)
-    low = heights_of(
+    low = find_sheet_heights(
         fixture, part, TOOLKIT, evolve(plain, supports=chosen, peg_height=22.0, support_height=10.0)
     )
     assert low is not None and all(band == (0.0, 12.0) for band in low.bands)

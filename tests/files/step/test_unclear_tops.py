@@ -21,7 +21,7 @@ from step_shapes import box, fused
 import workhold
 from workhold import Plate, load
 from workhold.files.budget import LIMITS
-from workhold.presenting.data import solid_data
+from workhold.presenting.data import describe_solid
 from workhold.supports.words import write_flat_faces_notes
 from workhold.units import INCH
 from workhold.web.request_forms import WorkpieceForm
@@ -62,8 +62,8 @@ def test_what_could_not_be_told_is_not_said_to_be_closed_to_the_sky(
     workhold.save(result, tmp_path / "r.json")
     assert workhold.open(tmp_path / "r.json").workpiece.solid == part.solid
     assert workhold.verify(tmp_path / "r.json").faults == ()
-    sent = {"name": part.name, "loops": [loop.tolist() for loop in part.loops], **solid_data(part.solid)}
-    asked = WorkpieceForm.model_validate(json.loads(json.dumps(sent))).workpiece(1000).solid
+    sent = {"name": part.name, "loops": [loop.tolist() for loop in part.loops], **describe_solid(part.solid)}
+    asked = WorkpieceForm.model_validate(json.loads(json.dumps(sent))).to_workpiece(1000).solid
     assert asked is not None and asked.unclear_heights == (20.0,)
 
 

@@ -13,7 +13,7 @@ from step_shapes import cylinder, fused
 
 import workhold
 from solid_examples import bearing_housing, boss, lying_shaft, ribbed, stepped
-from workhold.cli.tables import slides_always
+from workhold.cli.tables import explain_sliding_part
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece, refuse_unsure_numbers
 from workhold.model.dowel_lengths import standouts
@@ -89,7 +89,7 @@ def test_no_height_is_advised_where_the_part_slides_along_pegs_of_any() -> None:
         assert all(row.slides for row in loaded.heights if row.touchable > 0) == slides
         said = " ".join(loaded.remarks)
         assert "stand out 11 mm" in said and ("peg_height" in said) != slides
-        assert (slides_always(loaded.workpiece, loaded.heights) != []) == slides
+        assert (explain_sliding_part(loaded.workpiece, loaded.heights) != []) == slides
 
 
 def test_numbers_that_depend_on_the_height_are_refused_with_both() -> None:

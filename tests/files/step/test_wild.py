@@ -31,9 +31,9 @@ from solid_examples import EXAMPLES
 from workhold import load
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.step.heights import measures, standing
-from workhold.files.step.level_faces import bottom_loops, level_tops
-from workhold.files.step.library import sub_shapes
+from workhold.files.step.heights import measure_outline, stand_solid
+from workhold.files.step.level_faces import find_bottom_loops, find_open_level_tops
+from workhold.files.step.library import list_sub_shapes
 from workhold.geometry.loop import compute_signed_area, loop_segments
 
 PLATE = cut(filleted(box(60, 40, 20), 5, upright), cylinder(6, 40, (30, 20, -5)))
@@ -69,12 +69,15 @@ def larger() -> gp_Trsf:
 
 def figures(shape: Any, high: float, scale: float = 1.0) -> list[float]:
     """Area, border, touchable border, pieces, and areas of the faces below and on top, in the first size."""
-    solid = standing(shape)
-    outline = solid.outline(scale * high, 0.5 * scale, scale)
-    area, border, touchable, band = measures(outline)
+    solid = stand_solid(shape)
+    outline = solid.make_outline(scale * high, 0.5 * scale, scale)
+    area, border, touchable, band = measure_outline(outline)
     level = [
         sum(compute_signed_area(loop_segments(loop)) for loop in loops)
-        for loops in (bottom_loops(solid), [loop for top in level_tops(solid) for loop in top.open])
+        for loops in (
+            find_bottom_loops(solid),
+            [loop for top in find_open_level_tops(solid) for loop in top.open],
+        )
     ]
     lengths = [border / scale, touchable / scale, band / scale, len(outline.loops)]
     return [area / scale**2, *lengths, *(one / scale**2 for one in level)]
@@ -148,7 +151,7 @@ def test_surfaces_without_a_solid_are_refused(tmp_path: Path) -> None:
     """Faces alone, also those of a closed part, are none of a solid."""
     together, builder = TopoDS_Compound(), BRep_Builder()
     builder.MakeCompound(together)
-    for face in sub_shapes(PLATE, "FACE")[1:]:
+    for face in list_sub_shapes(PLATE, "FACE")[1:]:
         builder.Add(together, face)
     with pytest.raises(InputError, match=r"surfaces \(10\) but no solid: export the part as a closed solid"):
         load(write_step(tmp_path / "part.step", together), peg_height=12.0)

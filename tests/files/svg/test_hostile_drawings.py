@@ -15,7 +15,7 @@ from workhold.files.budget import LIMITS, Budget, OverBudgetError
 from workhold.files.outline.chain import Drawing
 from workhold.files.part.load import read_workpiece
 from workhold.files.svg import document, shapes
-from workhold.files.svg.document import tokens_of
+from workhold.files.svg.document import tokenize_css
 from workhold.files.svg.reader import read_svg
 from workhold.files.svg.walk import ElementNesting, SvgWalk
 
@@ -243,9 +243,9 @@ def test_a_style_that_is_repeated_is_read_once(monkeypatch: pytest.MonkeyPatch) 
 
     def counted(text: str, place: str, budget: Budget) -> list[object]:
         read.append(place)
-        return tokens_of(text, place, budget)
+        return tokenize_css(text, place, budget)
 
-    monkeypatch.setattr(document, "tokens_of", counted)
+    monkeypatch.setattr(document, "tokenize_css", counted)
     body = '<rect style="fill:none;stroke:#000000" width="5" height="5"/>' * 100
     assert len(drawing(body).chains) == 100
     assert read == ["the style of rect number 1 (without id)"]

@@ -13,7 +13,7 @@ from reading_helpers import read_svg
 
 from workhold.errors import InputError
 from workhold.files.part.load import read_workpiece
-from workhold.files.part.survey import survey
+from workhold.files.part.survey import survey_part_file
 from workhold.files.svg.reader import read_svg as read_chains
 
 # Apart from each other, and without a symmetry that would hide a mirror image.
@@ -132,8 +132,8 @@ def test_a_survey_tells_the_size_in_pixels(tmp_path: Path) -> None:
     """A page can show what each count to the inch would make of a drawing."""
     path = tmp_path / "drawn.svg"
     path.write_text(DRAWING.format(root='width="850px" height="566px" viewBox="0 0 425 283"', body=PLATE))
-    seen = survey(path)
+    seen = survey_part_file(path)
     assert seen.asked == ("unit",)
     assert seen.size == pytest.approx((283.465, 170.079))
     assert seen.pixels == pytest.approx((566.93, 340.158))
-    assert survey(path, unit="mm").pixels is None
+    assert survey_part_file(path, unit="mm").pixels is None

@@ -54,7 +54,7 @@ def ours(sheet: str, root: ElementTree.Element) -> dict[str, list[tuple[int, ...
     matcher = SelectorMatcher(Budget(LIMITS["style"]))
     for rule in tinycss2.parse_stylesheet(sheet, skip_whitespace=True):
         matcher.add(rule.prelude)
-    found = matcher.matched(root, Budget(UNLIMITED))
+    found = matcher.match_elements(root, Budget(UNLIMITED))
     return {element.get("id", ""): selected for element, selected in found}
 
 

@@ -30,4 +30,4 @@ def test_rounding_at_an_edge_shows_nothing_and_hides_nothing(
 ) -> None:
     """A millionth of the window's size on either side of an edge is on it."""
     chain = Chain(((low, 4.0), (high, 4.0), (high, 6.0), (low, 6.0), (low, 4.0)), (0.0,) * 4, ("line",) * 4)
-    assert window.shows(chain, Budget(UNLIMITED)) == shown
+    assert window.classify_visibility(chain, Budget(UNLIMITED)) == shown

@@ -20,7 +20,7 @@ from ezdxf.math import fit_points_to_cad_cv
 
 from workhold.conventions import SAME_POINT, TILT
 from workhold.errors import InputError
-from workhold.files.outline.chain import arc_bulges
+from workhold.files.outline.chain import list_arc_bulges
 from workhold.geometry.rational import Pieces, point_at, split_ellipse, split_spline
 from workhold.limits import MOST_LENGTH
 
@@ -59,8 +59,8 @@ class RawChain:
     heights: Sequence[float] = ()
 
 
-def seen_from_below(entity: Any) -> bool:
-    """Whether an entity's extrusion is (0, 0, -1); raises InputError when it is tilted."""
+def is_seen_from_below(entity: Any) -> bool:
+    """Return whether an entity's extrusion is (0, 0, -1); raise InputError when it is tilted."""
     x, y, z = entity.dxf.extrusion
     if z == 0 or abs(x) > TILT * abs(z) or abs(y) > TILT * abs(z):
         raise InputError(
@@ -70,60 +70,63 @@ def seen_from_below(entity: Any) -> bool:
     return bool(z < 0)
 
 
-def in_layout(
+def place_chain_in_layout(
     entity: Any, points: Sequence[Point3], bulges: Sequence[float], numbered: bool = False
 ) -> RawChain:
-    """A chain in OCS as a chain in the layout's or block's coordinates."""
-    if seen_from_below(entity):
+    """Return a chain in OCS as a chain in the layout's or block's coordinates."""
+    if is_seen_from_below(entity):
         points = [(-x, y, -z) for x, y, z in points]
         bulges = [-b for b in bulges]
     return RawChain(points, bulges, numbered)
 
 
-def line(entity: Any) -> RawChain:
-    """A LINE; its ends are never in OCS."""
+def read_line(entity: Any) -> RawChain:
+    """Return a LINE; its ends are never in OCS."""
     return RawChain([tuple(entity.dxf.start), tuple(entity.dxf.end)], [0.0])
 
 
-def circle(entity: Any) -> RawChain:
-    """A CIRCLE, as two halves."""
+def read_circle(entity: Any) -> RawChain:
+    """Return a CIRCLE, as two halves."""
     x, y, z = entity.dxf.center
-    radius = positive_radius(entity)
+    radius = read_radius(entity)
     right, left = (x + radius, y, z), (x - radius, y, z)
-    return in_layout(entity, [right, left, right], [1.0, 1.0])
+    return place_chain_in_layout(entity, [right, left, right], [1.0, 1.0])
 
 
-def arc(entity: Any) -> RawChain:
-    """An ARC, counter-clockwise in its OCS; equal angles, or a full turn between them, make a circle."""
+def read_arc(entity: Any) -> RawChain:
+    """Return an ARC, counter-clockwise in its OCS; equal angles, or a full turn between them, make a circle."""
     start, end = float(entity.dxf.start_angle), float(entity.dxf.end_angle)
     sweep = radians((end - start) % 360.0)
     if min(sweep, tau - sweep) < 1e-9:
-        return circle(entity)
+        return read_circle(entity)
     x, y, z = entity.dxf.center
-    radius = positive_radius(entity)
-    bulges = arc_bulges(sweep)
+    radius = read_radius(entity)
+    bulges = list_arc_bulges(sweep)
     angles = [radians(start), radians(end)]
     if len(bulges) == 2:
         angles.insert(1, radians(start) + sweep / 2)
-    return in_layout(entity, [(x + radius * cos(t), y + radius * sin(t), z) for t in angles], bulges)
+    return place_chain_in_layout(
+        entity, [(x + radius * cos(t), y + radius * sin(t), z) for t in angles], bulges
+    )
 
 
-def positive_radius(entity: Any) -> float:
-    """The radius in drawing units; refuses a negative one (zero gives a chain of zero length, dropped later)."""
+def read_radius(entity: Any) -> float:
+    """Return the radius in drawing units; refuse a negative one (zero gives a chain of zero length, dropped later)."""
     radius = float(entity.dxf.radius)
     if not radius >= 0:
         raise InputError(f"has the radius {radius:g}: correct it.")
     return radius
 
 
-def lwpolyline(entity: Any) -> RawChain:
+def read_lwpolyline(entity: Any) -> RawChain:
     height = float(entity.dxf.elevation)
     rows = [((float(x), float(y), height), float(bulge)) for x, y, bulge in entity.get_points("xyb")]
-    return in_layout(entity, *polyline_points(rows, bool(entity.closed)), numbered=True)
+    return place_chain_in_layout(entity, *collect_polyline_points(rows, bool(entity.closed)), numbered=True)
 
 
-def polyline(entity: Any) -> RawChain:
-    """An old-style POLYLINE: flat ones with bulges, 3D ones as lines (refused later unless they lie flat).
+def read_polyline(entity: Any) -> RawChain:
+    """Return an old-style POLYLINE: flat ones with bulges, 3D ones as lines (refused later unless they lie
+    flat).
 
     Refuses meshes and polylines smoothed into splines.
     """
@@ -135,38 +138,42 @@ def polyline(entity: Any) -> RawChain:
         )
     if entity.is_3d_polyline:
         rows = [(tuple(vertex.dxf.location), 0.0) for vertex in entity.vertices]
-        return RawChain(*polyline_points(rows, bool(entity.is_closed)), numbered=True)
+        return RawChain(*collect_polyline_points(rows, bool(entity.is_closed)), numbered=True)
     height = float(entity.dxf.elevation[2])
     places = [(vertex.dxf.location, float(vertex.dxf.get("bulge", 0.0))) for vertex in entity.vertices]
     rows = [((float(place[0]), float(place[1]), height), bulge) for place, bulge in places]
-    return in_layout(entity, *polyline_points(rows, bool(entity.is_closed)), numbered=True)
+    return place_chain_in_layout(
+        entity, *collect_polyline_points(rows, bool(entity.is_closed)), numbered=True
+    )
 
 
-def polyline_points(rows: Sequence[tuple[Point3, float]], closed: bool) -> tuple[list[Point3], list[float]]:
-    """Points and bulges of a polyline; the bulge of an open polyline's last vertex means nothing."""
+def collect_polyline_points(
+    rows: Sequence[tuple[Point3, float]], closed: bool
+) -> tuple[list[Point3], list[float]]:
+    """Return the points and bulges of a polyline; the bulge of an open polyline's last vertex means nothing."""
     points, bulges = [point for point, _ in rows], [bulge for _, bulge in rows]
     if closed and points:
         points.append(points[0])
     return points, bulges[: max(len(points) - 1, 0)]
 
 
-def spline(entity: Any) -> RawChain:
-    """A SPLINE by its control points, or else through its fit points; its numbers are never in OCS.
+def read_spline(entity: Any) -> RawChain:
+    """Return a SPLINE by its control points, or else through its fit points; its numbers are never in OCS.
 
     Refuses one whose numbers do not agree.
     """
     control = [tuple(map(float, point)) for point in entity.control_points]
     if not control:
-        return through_fit_points(entity)
+        return read_spline_through_fit_points(entity)
     weights = list(entity.weights) or None
     pieces = split_spline(
         [point[:2] for point in control], weights, list(entity.knots), int(entity.dxf.degree)
     )
-    return curve(pieces, [z for _, _, z in control])
+    return make_curve_chain(pieces, [z for _, _, z in control])
 
 
-def through_fit_points(entity: Any) -> RawChain:
-    """A SPLINE of fit points alone, as CAD programs draw it.
+def read_spline_through_fit_points(entity: Any) -> RawChain:
+    """Return a SPLINE of fit points alone, as CAD programs draw it.
 
     It is the cubic of continuous curvature through them whose parameter grows as the chords are long. At its
     ends it has the tangents given, or else no curvature; where it is closed, it is periodic. Refuses fewer
@@ -194,15 +201,15 @@ def through_fit_points(entity: Any) -> RawChain:
     # Its ends are those drawn, without the rounding of the equations.
     control = [every[0], *((p.x, p.y) for p in fitted.control_points[1:-1]), points[-1]]
     pieces = split_spline([point[:2] for point in control], None, list(fitted.knots()), 3)
-    return curve(pieces[count : 2 * count] if closed else pieces, [z for _, _, z in points])
+    return make_curve_chain(pieces[count : 2 * count] if closed else pieces, [z for _, _, z in points])
 
 
-def ellipse(entity: Any) -> RawChain:
-    """An ELLIPSE or a part of one; its numbers are never in OCS.
+def read_ellipse(entity: Any) -> RawChain:
+    """Return an ELLIPSE or a part of one; its numbers are never in OCS.
 
     Refuses axes that are not those of an ellipse.
     """
-    seen_from_below(entity)
+    is_seen_from_below(entity)
     center, major = entity.dxf.center, entity.dxf.major_axis
     minor = entity.dxf.extrusion.normalize().cross(major) * float(entity.dxf.ratio)
     if not (abs(minor) > 0 and abs(major) > 0):
@@ -212,20 +219,20 @@ def ellipse(entity: Any) -> RawChain:
     if min(sweep, tau - sweep) < 1e-9:
         sweep = 2 * pi
     pieces = split_ellipse((center.x, center.y), (major.x, major.y), (minor.x, minor.y), start, sweep)
-    return curve(pieces, [center.z, center.z + major.z, center.z + minor.z])
+    return make_curve_chain(pieces, [center.z, center.z + major.z, center.z + minor.z])
 
 
-def curve(pieces: Pieces, heights: Sequence[float]) -> RawChain:
+def make_curve_chain(pieces: Pieces, heights: Sequence[float]) -> RawChain:
     ends = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
     return RawChain([(x, y, heights[0]) for x, y in ends], [0.0], curved={0: pieces}, heights=heights)
 
 
 SHAPES: dict[str, Callable[[Any], RawChain]] = {
-    "LINE": line,
-    "ARC": arc,
-    "CIRCLE": circle,
-    "LWPOLYLINE": lwpolyline,
-    "POLYLINE": polyline,
-    "SPLINE": spline,
-    "ELLIPSE": ellipse,
+    "LINE": read_line,
+    "ARC": read_arc,
+    "CIRCLE": read_circle,
+    "LWPOLYLINE": read_lwpolyline,
+    "POLYLINE": read_polyline,
+    "SPLINE": read_spline,
+    "ELLIPSE": read_ellipse,
 }

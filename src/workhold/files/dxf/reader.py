@@ -20,16 +20,16 @@ from typing import Any
 
 from attrs import evolve
 
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError, make_printable, shorten_middle
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
 from workhold.files.outline.chain import Drawing, Placement
-from workhold.files.outline.diagnostics import unit_asked
+from workhold.files.outline.diagnostics import make_unit_question
 from workhold.files.questions import DRAWING_UNIT
 from workhold.limits import read_number
-from workhold.units import unit_named
+from workhold.units import find_unit
 
-__all__ = ["code_said", "read_document", "read_dxf"]
+__all__ = ["normalize_unit_code", "read_document", "read_dxf"]
 
 # $INSUNITS (DXF reference, header variables): name and millimetres.
 INSUNITS = {
@@ -61,7 +61,7 @@ def read_dxf(
     fit: float | None = None,
     budget: Budget | None = None,
 ) -> Drawing:
-    """Reads the outline entities of a DXF file's model space.
+    """Read the outline entities of a DXF file's model space.
 
     Parameters
     ----------
@@ -81,9 +81,9 @@ def read_dxf(
     refuse_other_formats(content)
     budget = budget or Budget(LIMITS["dxf"], len(content))
     refuse_crowded(content, budget)
-    document, remarks = opened(path)
+    document, remarks = open_document(path)
     budget.check_time()
-    code = unit_code(document, content)
+    code = read_unit_code(document, content)
     drawing = read_document(
         document, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit, budget=budget
     )
@@ -100,14 +100,14 @@ def read_document(
     fit: float | None = None,
     budget: Budget | None = None,
 ) -> Drawing:
-    """Reads the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`."""
+    """Read the outline entities of the model space of a document of ezdxf; see :func:`read_dxf`."""
     known = scale_of(code, unit, usual_unit)
     scale, unit_remarks = known or (1.0, [])
     try:
         walk = DxfWalk(document, layers, fit, budget or Budget(LIMITS["dxf"]))
         space = document.modelspace()
     except Exception as error:  # tables and layouts of a damaged file may fail in any way
-        raise damaged(error) from error
+        raise make_damage_error(error) from error
     try:
         walk.visit_all(space, BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
         walk.refuse_missing_layers()
@@ -117,15 +117,17 @@ def read_document(
         walk.chains = []
     if known is None:
         lacking = (
-            f"is not one for parts ($INSUNITS {shortened(plain(str(code)), 40)})" if code else "is not said"
+            f"is not one for parts ($INSUNITS {shorten_middle(make_printable(str(code)), 40)})"
+            if code
+            else "is not said"
         )
-        raise unit_asked(f"the drawing's unit {lacking}", walk.chains)
-    remarks = (*unit_remarks, *walk.remarks())
+        raise make_unit_question(f"the drawing's unit {lacking}", walk.chains)
+    remarks = (*unit_remarks, *walk.list_remarks())
     return Drawing(tuple(walk.chains), remarks, walk.curves.found, walk.layers, looks=walk.looks)
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuses what is plainly no DXF, or cut short, before ezdxf tries its best with it."""
+    """Refuse what is plainly no DXF, or cut short, before ezdxf tries its best with it."""
     if content[:4] == b"AC10" or content[:2] == b"MC":
         raise InputError("this is a DWG drawing, not a DXF file: save it as DXF.")
     if content.startswith(BINARY):
@@ -136,8 +138,8 @@ def refuse_other_formats(content: bytes) -> None:
         raise InputError("the DXF file is cut short (it has no end mark): export or copy it again.")
 
 
-def opened(path: Path) -> tuple[Any, list[str]]:
-    """The ezdxf document, with a remark when the file had to be repaired; refuses one beyond repair."""
+def open_document(path: Path) -> tuple[Any, list[str]]:
+    """Return the ezdxf document, with a remark when the file had to be repaired; refuse one beyond repair."""
     from ezdxf import recover
     from ezdxf.filemanagement import readfile
 
@@ -147,15 +149,15 @@ def opened(path: Path) -> tuple[Any, list[str]]:
         try:
             document, _ = recover.readfile(path)
         except Exception:
-            raise damaged(first) from first
+            raise make_damage_error(first) from first
         return document, [
-            f"The DXF file was damaged and had to be repaired ({one_line(first)}); check the outline."
+            f"The DXF file was damaged and had to be repaired ({shorten_to_one_line(first)}); check the outline."
         ]
 
 
-def damaged(error: Exception) -> InputError:
-    """The refusal of a file that the library cannot read."""
-    reason = "it has no model space" if isinstance(error, KeyError) else one_line(error)
+def make_damage_error(error: Exception) -> InputError:
+    """Return the refusal of a file that the library cannot read."""
+    reason = "it has no model space" if isinstance(error, KeyError) else shorten_to_one_line(error)
     return InputError(f"the DXF file is damaged ({reason}): open it in a CAD program and export it again.")
 
 
@@ -170,7 +172,7 @@ MOST_TAGS = 15
 
 
 def refuse_crowded(content: bytes, budget: Budget) -> None:
-    """Refuses a file with more in it than a drawing may have, before the library takes long to read it."""
+    """Refuse a file with more in it than a drawing may have, before the library takes long to read it."""
     most = budget.limits.most_elements
     if most is None or len(content) <= FEW_BYTES:
         return
@@ -180,42 +182,42 @@ def refuse_crowded(content: bytes, budget: Budget) -> None:
     Budget(budget.limits).spend(max(found, tags // MOST_TAGS))
 
 
-def one_line(error: Exception) -> str:
-    """An error's text without line breaks, not too long, and without a full stop."""
+def shorten_to_one_line(error: Exception) -> str:
+    """Return an error's text without line breaks, not too long, and without a full stop."""
     text = " ".join(str(error).split()) or type(error).__name__
     return text[:120].rstrip(".")
 
 
-def unit_code(document: Any, content: bytes) -> int | str:
-    """The $INSUNITS of a document; 0 for none."""
+def read_unit_code(document: Any, content: bytes) -> int | str:
+    """Return the $INSUNITS of a document; 0 for none."""
     if written := INSUNITS_WRITTEN.search(content):
         # Of a number that is none the library's repair takes the digits with which it begins.
-        return code_said(written[1].decode("ascii", "replace").strip())
+        return normalize_unit_code(written[1].decode("ascii", "replace").strip())
     # Into a file without a header ezdxf writes one of its own, with metres in it.
-    return code_said(document.header.get("$INSUNITS", 0)) if b"$INSUNITS" in content else 0
+    return normalize_unit_code(document.header.get("$INSUNITS", 0)) if b"$INSUNITS" in content else 0
 
 
-def code_said(value: Any) -> int | str:
-    """An $INSUNITS as a whole number, or as it is written where it is none."""
+def normalize_unit_code(value: Any) -> int | str:
+    """Return an $INSUNITS as a whole number, or as it is written where it is none."""
     number = read_number(value)
     return int(number) if isfinite(number) and number == int(number) else str(value)
 
 
 def scale_of(code: int | str, unit: str | None, usual_unit: str | None) -> tuple[float, list[str]] | None:
-    """Millimetres per drawing unit, and a remark when the user's unit is not the file's $INSUNITS.
+    """Return the millimetres per drawing unit, and a remark when the user's unit is not the file's $INSUNITS.
 
     None when neither the file nor the user gives a unit.
     """
     name, scale = INSUNITS.get(code, ("", None)) if isinstance(code, int) else ("", None)
     asked = unit if unit is not None or scale is not None else usual_unit
     if asked is not None:
-        millimetres = unit_named(asked).millimetres
+        millimetres = find_unit(asked).millimetres
         differs = scale is not None and scale != millimetres
         said = f"The file says its unit is {name}; it was read in {unit} as asked."
         return millimetres, [said] if differs else []
     if scale is None:
         return None
-    if usual_unit is not None and scale != unit_named(usual_unit).millimetres:
+    if usual_unit is not None and scale != find_unit(usual_unit).millimetres:
         # Whoever gave the unit for the drawing's sake learns here that it did not count.
         return scale, [f"The file says its unit is {name}; it was read so ({DRAWING_UNIT} overrides it)."]
     return scale, []

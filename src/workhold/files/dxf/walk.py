@@ -15,10 +15,10 @@ from typing import Any, TypeVar
 from attrs import evolve, frozen
 
 from workhold.conventions import LEVEL
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError, make_printable, shorten_middle
 from workhold.files.budget import Budget, OverBudgetError
-from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, seen_from_below
-from workhold.files.outline.chain import Chain, Placement, counted, listed
+from workhold.files.dxf.entities import REFUSED, SHAPES, RawChain, is_seen_from_below
+from workhold.files.outline.chain import Chain, Placement, format_count, list_first_items
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import LAYERS
 
@@ -82,12 +82,12 @@ class DxfWalk:
             self.visit(entity, nest)
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Collects one entity, or notes why it was left out."""
+        """Collect one entity, or notes why it was left out."""
         self.budget.spend()
         kind = entity.dxftype()
         label = f"{kind} {name_of(entity)}{nest.suffix}"
         try:
-            layer = self.effective_layer(entity, nest)
+            layer = self.find_effective_layer(entity, nest)
             if kind == "INSERT":
                 self.visit_insert(entity, nest, layer, label)
             elif kind in SHAPES or kind in REFUSED:
@@ -104,14 +104,14 @@ class DxfWalk:
         except Exception as error:  # ezdxf checks few values; a damaged one may fail in any way
             raise InputError(f"{label} is damaged ({error}): delete it or draw it again.") from error
 
-    def effective_layer(self, entity: Any, nest: BlockNesting) -> str:
-        """The layer an entity counts as being on."""
+    def find_effective_layer(self, entity: Any, nest: BlockNesting) -> str:
+        """Return the layer an entity counts as being on."""
         # Entities of kinds that the library does not know have no layer it could tell.
         layer = str(entity.dxf.get("layer", "0")) if entity.dxf.is_supported("layer") else "0"
         return nest.layer if layer == "0" and nest.layer is not None else layer
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
-        """Whether an outline entity is on a chosen layer, or visible when none were chosen."""
+        """Return whether an outline entity is on a chosen layer, or visible when none were chosen."""
         key = layer.casefold()
         self.names.setdefault(key, layer)
         if self.wanted is not None and key not in self.wanted:
@@ -123,7 +123,7 @@ class DxfWalk:
         return True
 
     def add(self, entity: Any, kind: str, placement: Placement, label: str) -> None:
-        """Adds an entity's chain.
+        """Add an entity's chain.
 
         Raises
         ------
@@ -136,8 +136,8 @@ class DxfWalk:
                 f"{label} at ({x:.6g}, {y:.6g}) is {REFUSED[kind]}, which is not made of lines and arcs: "
                 f"convert it to lines and arcs in the CAD program, or leave its layer out with {LAYERS}."
             )
-        self.budget.spend(vertex_count(entity))
-        raw = said_of(label, SHAPES[kind], entity)
+        self.budget.spend(count_vertices(entity))
+        raw = apply_with_label(label, SHAPES[kind], entity)
         self.interpolated += kind == "SPLINE" and not len(entity.control_points)
         if not raw.bulges:
             raw = RawChain([*raw.points, *raw.points][:2] or [(0.0, 0.0, 0.0)] * 2, [0.0])
@@ -145,14 +145,14 @@ class DxfWalk:
         count = len(raw.bulges)
         labels = (label,) * count
         if raw.numbered and count > 1:
-            labels = tuple(numbered(label, k) for k in range(count))
-        chain = self.curves.chain(raw.points, raw.bulges, labels, raw.curved, placement)
+            labels = tuple(label_segment(label, k) for k in range(count))
+        chain = self.curves.make_chain(raw.points, raw.bulges, labels, raw.curved, placement)
         if chain is None:
             chain = Chain((placement(raw.points[0]),) * 2, (0.0,), (label,))
         self.chains.append(chain)
 
     def check_level(self, raw: RawChain, placement: Placement, label: str) -> None:
-        """Refuses entities that are not level, or lie at another height than those before."""
+        """Refuse entities that are not level, or lie at another height than those before."""
         for z in (*(z for _, _, z in raw.points), *raw.heights):
             height = placement.height_scale * z + placement.height
             if self.level is None:
@@ -165,7 +165,7 @@ class DxfWalk:
                 )
 
     def visit_insert(self, insert: Any, nest: BlockNesting, layer: str, label: str) -> None:
-        """Visits the entities of an inserted block, once for every place of an array.
+        """Visit the entities of an inserted block, once for every place of an array.
 
         Refuses tilted or crushed blocks, and blocks that contain themselves.
         """
@@ -177,7 +177,7 @@ class DxfWalk:
             return
         if name.casefold() in nest.blocks:
             raise InputError(f"{label} inserts block '{name}', which contains itself: repair the drawing.")
-        said_of(label, seen_from_below, insert)
+        apply_with_label(label, is_seen_from_below, insert)
         if insert.dxf.get("invisible", 0):
             self.hidden["made invisible"] += 1
             return
@@ -185,7 +185,7 @@ class DxfWalk:
         try:
             # An empty block costs something too.
             self.budget.spend(rows * columns)
-            self.budget.foresee(rows * columns * self.written_out(name, block))
+            self.budget.refuse_too_many_ahead(rows * columns * self.count_inserted_entities(name, block))
         except OverBudgetError as error:
             if rows * columns == 1:
                 raise
@@ -198,14 +198,16 @@ class DxfWalk:
             blocks=(*nest.blocks, name.casefold()),
         )
         for single in insert.multi_insert() if rows * columns > 1 else [insert]:
-            placement = nest.placement.after(block_placement(single))
+            placement = nest.placement.compose_after(make_block_placement(single))
             if placement.flat:
                 raise InputError(f"{label} has a scale of zero: correct it.")
-            with self.budget.nested(label):
+            with self.budget.count_nesting(label):
                 self.visit_all(block, evolve(inner, placement=placement))
 
-    def written_out(self, name: str, block: Any, depth: int = 0) -> int:
-        """How many entities are visited at least where a block is inserted; inserts double it from one to the next."""
+    def count_inserted_entities(self, name: str, block: Any, depth: int = 0) -> int:
+        """Return how many entities are visited at least where a block is inserted; inserts double it from one
+        to the next.
+        """
         key = name.casefold()
         if key in self.sizes or depth > (self.budget.limits.deepest or 0):
             return self.sizes.get(key, 1)
@@ -216,40 +218,45 @@ class DxfWalk:
             size += 1
             if entity.dxftype() == "INSERT" and not entity.dxf.get("invisible", 0):
                 inner = self.document.blocks.get(str(entity.dxf.get("name", "")))
-                size += 0 if inner is None else self.written_out(str(entity.dxf.name), inner, depth + 1)
+                size += (
+                    0
+                    if inner is None
+                    else self.count_inserted_entities(str(entity.dxf.name), inner, depth + 1)
+                )
         self.sizes[key] = size
         return size
 
     def refuse_missing_layers(self) -> None:
-        """Refuses chosen layers on which there is no outline entity."""
+        """Refuse chosen layers on which there is no outline entity."""
         missing = [name for key, name in (self.wanted or {}).items() if key not in self.names]
         if missing:
-            have = listed(sorted(self.names.values())) or "none"
+            have = list_first_items(sorted(self.names.values())) or "none"
             raise InputError(f"no line or arc is on layer '{missing[0]}': layers with some are {have}.")
         if self.wanted is not None and not self.wanted:
             raise InputError(f"no layer was chosen: name one, or leave {LAYERS} out.")
 
-    def remarks(self) -> list[str]:
-        """What was left out, one sentence for each reason."""
+    def list_remarks(self) -> list[str]:
+        """Return what was left out, one sentence for each reason."""
         remarks = []
         if self.ignored:
-            kinds = [f"{count} {quoted(kind)}" for kind, count in sorted(self.ignored.items())]
-            remarks.append(f"Ignored entities that are no outline: {enumerated(kinds)}.")
+            kinds = [f"{count} {shorten_name(kind)}" for kind, count in sorted(self.ignored.items())]
+            remarks.append(f"Ignored entities that are no outline: {list_first_words(kinds)}.")
         if self.interpolated:
-            splines = counted(self.interpolated, "spline", "splines")
+            splines = format_count(self.interpolated, "spline", "splines")
             remarks.append(
                 f"Read {splines} of fit points alone as the cubic through them that CAD programs draw; some "
                 "draw another one, so check the outline."
             )
         if self.hidden:
             total = sum(self.hidden.values())
-            places = [f"{count} {quoted(where)}" for where, count in sorted(self.hidden.items())]
+            places = [f"{count} {shorten_name(where)}" for where, count in sorted(self.hidden.items())]
             remarks.append(
-                f"Left out {counted(total, 'hidden entity', 'hidden entities')} ({enumerated(places)}); name a layer "
+                f"Left out {format_count(total, 'hidden entity', 'hidden entities')} "
+                f"({list_first_words(places)}); name a layer "
                 f"with {LAYERS} to read it all the same."
             )
         if self.missing_blocks:
-            names = listed([quoted(name) for name in sorted(self.missing_blocks)])
+            names = list_first_items([shorten_name(name) for name in sorted(self.missing_blocks)])
             remarks.append(
                 f"Left out blocks that the file does not contain: {names}; bind external references to read "
                 "them."
@@ -261,31 +268,31 @@ class DxfWalk:
 LONGEST_NAME, MOST_NAMED = 80, 10
 
 
-def quoted(name: str) -> str:
-    """A name as a file gives it, in few letters and fit to be shown."""
-    return shortened(plain(name), LONGEST_NAME)
+def shorten_name(name: str) -> str:
+    """Return a name as a file gives it, in few letters and fit to be shown."""
+    return shorten_middle(make_printable(name), LONGEST_NAME)
 
 
-def enumerated(words: Sequence[str]) -> str:
-    """The first of some words with commas between them, and how many more there are."""
+def list_first_words(words: Sequence[str]) -> str:
+    """Return the first of some words with commas between them, and how many more there are."""
     more = len(words) - MOST_NAMED
     return ", ".join(words[:MOST_NAMED]) + (f" and {more} more" if more > 0 else "")
 
 
 def name_of(entity: Any) -> str:
-    """The handle of an entity, in few letters: labels repeat it for every segment."""
-    return shortened(str(entity.dxf.handle), 20)
+    """Return the handle of an entity, in few letters: labels repeat it for every segment."""
+    return shorten_middle(str(entity.dxf.handle), 20)
 
 
 def look_of(entity: Any) -> str:
-    """The colour and the kind of line of an entity; empty where it has those of its layer."""
+    """Return the colour and the kind of line of an entity; empty where it has those of its layer."""
     color = entity.dxf.get("true_color", entity.dxf.get("color", BY_LAYER))
     kind = str(entity.dxf.get("linetype", "BYLAYER")).casefold()
     return "" if color == BY_LAYER and kind == "bylayer" else f"{color} {kind}"
 
 
-def vertex_count(entity: Any) -> int:
-    """How many vertices, control points and fit points an entity has."""
+def count_vertices(entity: Any) -> int:
+    """Return how many vertices, control points and fit points an entity has."""
     kind = entity.dxftype()
     if kind == "LWPOLYLINE":
         return len(entity)
@@ -294,7 +301,7 @@ def vertex_count(entity: Any) -> int:
     return len(entity.control_points) + len(entity.fit_points) if kind == "SPLINE" else 0
 
 
-def said_of(label: str, function: Callable[[Any], T], entity: Any) -> T:
+def apply_with_label(label: str, function: Callable[[Any], T], entity: Any) -> T:
     """Apply a function to an entity; its complaints begin with the entity's label."""
     try:
         return function(entity)
@@ -302,13 +309,13 @@ def said_of(label: str, function: Callable[[Any], T], entity: Any) -> T:
         raise InputError(f"{label} {error}") from error
 
 
-def numbered(label: str, k: int) -> str:
-    """The label of segment k of a polyline: its number stands right after the handle."""
+def label_segment(label: str, k: int) -> str:
+    """Return the label of segment k of a polyline: its number stands right after the handle."""
     kind, handle, *rest = label.split(" ", 2)
     return " ".join([kind, handle, f"segment {k}", *rest])
 
 
-def block_placement(insert: Any) -> Placement:
+def make_block_placement(insert: Any) -> Placement:
     matrix = insert.matrix44()
     ax, ay, _ = matrix.transform_direction((1, 0, 0))
     cx, cy, _ = matrix.transform_direction((0, 1, 0))
@@ -318,7 +325,7 @@ def block_placement(insert: Any) -> Placement:
 
 
 def place_of(entity: Any) -> tuple[float, float]:
-    """Some point of an entity, in its own coordinates; the origin where it has none."""
+    """Return some point of an entity, in its own coordinates; the origin where it has none."""
     for name in ("center", "start", "vtx0", "start_location"):
         if entity.dxf.is_supported(name) and entity.dxf.hasattr(name):
             point = entity.dxf.get(name)

@@ -20,8 +20,8 @@ from ezdxf import options, units  # type: ignore[attr-defined]
 from ezdxf.enums import TextEntityAlignment
 from ezdxf.filemanagement import new
 
-from workhold.fixels.carrier import Carrier, column_letters
-from workhold.fixels.pegs import peg_outline
+from workhold.fixels.carrier import Carrier, make_column_letters
+from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Point, Segment
 from workhold.model.dowels import JawPlate, place_plates_in_drawing
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
 __all__ = [
     "CLEARANCE",
     "PLATE_LAYERS",
-    "content_of",
-    "layers_of",
-    "plates_dxf",
-    "setup_dxf",
+    "write_drawing_bytes",
+    "list_layer_colours",
+    "make_plates_dxf",
+    "make_setup_dxf",
 ]
 
 # Layer names and their AutoCAD colour numbers; besides, each carrier has a layer, such as JAW_LEFT, PLATE or
@@ -60,36 +60,39 @@ ARROW_HEAD, HALF_HEAD = 0.3, 0.12
 POINT_HOLE = 1 / 7
 
 
-def setup_dxf(
+def make_setup_dxf(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
     zero: PartZero | None = None,
     clearance: float = CLEARANCE,
 ) -> bytes:
-    """The bytes of a set-up's DXF drawing; the same set-up gives the same bytes.
+    """Return the bytes of a set-up's DXF drawing; the same set-up gives the same bytes.
 
     Parameters
     ----------
     zero : part zero; that of :func:`part_zero` without a wish if None.
     clearance : how far the cutter is to keep off the pegs' bodies, in mm.
     """
-    with drawn(layers_of(toolkit)) as document:
+    with make_drawing(list_layer_colours(toolkit)) as document:
         space, seen = document.modelspace(), shown(fixture, toolkit, workpiece)
         add_carriers(space, seen)
         for wall in seen.walls:
-            space.add_lwpolyline(wall.bar.corners, close=True, dxfattribs={"layer": layer_of(wall.carrier)})
+            space.add_lwpolyline(
+                wall.bar.corners, close=True, dxfattribs={"layer": name_plate_layer(wall.carrier)}
+            )
         add_part(space, workpiece.placed(fixture.pose))
         add_pegs(space, seen, clearance)
         add_clamps(space, seen, clearance)
         add_travel(space, seen)
         add_zero(space, fixture.pose, (zero or part_zero(workpiece)).point, AXIS * seen.pitch)
-        return content_of(document)
+        return write_drawing_bytes(document)
 
 
 @contextmanager
-def drawn(layers: Mapping[str, int]) -> Iterator[Drawing]:
-    """A new drawing in mm with layers of some colours, into which ezdxf writes no time and no random numbers.
+def make_drawing(layers: Mapping[str, int]) -> Iterator[Drawing]:
+    """Yield a new drawing in mm with layers of some colours, into which ezdxf writes no time and no random
+    numbers.
 
     That holds while the block runs.
     """
@@ -107,8 +110,8 @@ def drawn(layers: Mapping[str, int]) -> Iterator[Drawing]:
         options.write_fixed_meta_data_for_testing = before
 
 
-def content_of(document: Drawing) -> bytes:
-    """The bytes of a drawing, with its classes sorted: ezdxf would add them in a random order."""
+def write_drawing_bytes(document: Drawing) -> bytes:
+    """Return the bytes of a drawing, with its classes sorted: ezdxf would add them in a random order."""
     for name in sorted(document.entitydb.dxf_types_in_use()):
         document.classes.add_class(name)
     stream = StringIO()
@@ -116,11 +119,11 @@ def content_of(document: Drawing) -> bytes:
     return document.encode(stream.getvalue())
 
 
-def layer_of(carrier: Carrier) -> str:
-    """The layer that a carrier's plate is on.
+def name_plate_layer(carrier: Carrier) -> str:
+    """Return the layer that a carrier's plate is on.
 
     >>> from workhold import Vise
-    >>> [layer_of(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
+    >>> [name_plate_layer(carrier) for carrier in Vise(pitch=10, columns=2, peg_radius=3).carriers]
     ['JAW_LEFT', 'JAW_RIGHT']
     """
     if not (carrier.has_lattice and carrier.letter):
@@ -128,30 +131,32 @@ def layer_of(carrier: Carrier) -> str:
     return f"{carrier.noun}_{carrier.name}".upper()
 
 
-def peg_layer(carrier: Carrier) -> str:
-    """The layer that a carrier's pegs are on: of a clamp that of its body."""
-    return f"{carrier.peg}s".upper() if carrier.has_lattice else layer_of(carrier)
+def name_peg_layer(carrier: Carrier) -> str:
+    """Return the layer that a carrier's pegs are on: of a clamp that of its body."""
+    return f"{carrier.peg}s".upper() if carrier.has_lattice else name_plate_layer(carrier)
 
 
-def setting_layer(mover: Carrier) -> str:
-    return "OPENING" if mover.has_lattice else f"{layer_of(mover)}_SETTING"
+def name_setting_layer(mover: Carrier) -> str:
+    return "OPENING" if mover.has_lattice else f"{name_plate_layer(mover)}_SETTING"
 
 
-def layers_of(toolkit: Toolkit) -> dict[str, int]:
-    """The layers of a toolkit's set-ups, and their colours.
+def list_layer_colours(toolkit: Toolkit) -> dict[str, int]:
+    """Return the layers of a toolkit's set-ups, and their colours.
 
     >>> from workhold import Plate
-    >>> print(*layers_of(Plate(pitch=20, peg_radius=5)))
+    >>> print(*list_layer_colours(Plate(pitch=20, peg_radius=5)))
     PART LOCATORS CLAMP KEEP_OUT HOLES HOLES_USED CLAMP_SETTING PART_ZERO TEXT PLATE
     """
     moving = [carrier for carrier in toolkit.carriers if carrier.travel is not None]
     return {
         **PART,
-        **{peg_layer(carrier): PEGS for carrier in toolkit.carriers if carrier.contact.is_placed},
+        **{name_peg_layer(carrier): PEGS for carrier in toolkit.carriers if carrier.contact.is_placed},
         **HOLES,
-        **{setting_layer(carrier): SETTING for carrier in moving},
+        **{name_setting_layer(carrier): SETTING for carrier in moving},
         **OTHERS,
-        **{layer_of(carrier): SLIDING if carrier in moving else STILL for carrier in toolkit.carriers},
+        **{
+            name_plate_layer(carrier): SLIDING if carrier in moving else STILL for carrier in toolkit.carriers
+        },
     }
 
 
@@ -170,12 +175,12 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
     for each in seen.carriers:
         for peg in each.pegs:
             if each.carrier.peg_radius > 0:
-                outline = peg_outline(
+                outline = make_peg_outline(
                     (peg.x, peg.y), each.carrier.peg_radius, each.carrier.flat, peg.flat_deg
                 )
-                add_outline(space, outline, peg_layer(each.carrier))
+                add_outline(space, outline, name_peg_layer(each.carrier))
             else:
-                space.add_point((peg.x, peg.y), {"layer": peg_layer(each.carrier)})
+                space.add_point((peg.x, peg.y), {"layer": name_peg_layer(each.carrier)})
             out = each.carrier.body_radius + clearance
             if out > 0:
                 space.add_circle((peg.x, peg.y), out, {"layer": "KEEP_OUT"})
@@ -184,14 +189,14 @@ def add_pegs(space: Modelspace, seen: Shown, clearance: float) -> None:
 
 def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
     for clamp in seen.clamps:
-        layer = {"layer": layer_of(clamp.carrier)}
+        layer = {"layer": name_plate_layer(clamp.carrier)}
         radius, tip = clamp.carrier.peg_radius, (clamp.tip.x, clamp.tip.y)
         if radius > 0:
             space.add_circle(tip, radius, layer)
         else:
             space.add_point(tip, layer)
         if clamp.hole is not None and radius > 0:
-            add_outline(space, clamp.outline(), layer_of(clamp.carrier))
+            add_outline(space, clamp.outline(), name_plate_layer(clamp.carrier))
         if radius + clearance > 0:
             add_outline(space, clamp.outline(clearance), "KEEP_OUT")
         head, half = radius + ARROW_HEAD * clamp.pitch, HALF_HEAD * clamp.pitch
@@ -201,7 +206,7 @@ def add_clamps(space: Modelspace, seen: Shown, clearance: float) -> None:
 
 
 def add_outline(space: Modelspace, outline: Sequence[Segment], layer: str) -> None:
-    """Adds a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
+    """Add a closed outline: a circle, or a polyline whose arcs are shorter than whole circles."""
     first = outline[0]
     if isinstance(first, Arc) and first.is_full:
         space.add_circle(first.center, first.radius, {"layer": layer})
@@ -219,7 +224,7 @@ def add_text(space: Modelspace, words: str, at: Point, seen: Shown) -> None:
 def add_carriers(space: Modelspace, seen: Shown) -> None:
     for each in seen.carriers:
         carrier, plate = each.carrier, each.plate
-        space.add_lwpolyline(plate.corners, close=True, dxfattribs={"layer": layer_of(carrier)})
+        space.add_lwpolyline(plate.corners, close=True, dxfattribs={"layer": name_plate_layer(carrier)})
         half_x, half_y = carrier.pitch[0] / 2, carrier.pitch[1] / 2
         holes = each.holes(MOST_HOLES)
         for hole in holes:
@@ -230,19 +235,19 @@ def add_carriers(space: Modelspace, seen: Shown) -> None:
         columns, rows = {hole.column for hole in holes}, {hole.row for hole in holes}
         for column, x in each.named_columns:
             if column in columns:
-                add_text(space, column_letters(column), (x, below), seen)
+                add_text(space, make_column_letters(column), (x, below), seen)
         for row, y in each.named_rows:
             if row in rows:
                 add_text(space, str(row + 1), (beside, y), seen)
 
 
 def add_travel(space: Modelspace, seen: Shown) -> None:
-    """Adds each length to set, with the axes that it is measured between.
+    """Add each length to set, with the axes that it is measured between.
 
     A length is drawn outside the plates; of two along the same way the second is farther out.
     """
     for number, measured in enumerate(seen.measured):
-        setting, layer = measured.setting, {"layer": setting_layer(measured.setting.carrier)}
+        setting, layer = measured.setting, {"layer": name_setting_layer(measured.setting.carrier)}
         farther = 1 + sum(one.is_upright == measured.is_upright for one in seen.measured[:number])
         (x0, y0), (x1, y1) = (high for _, high in measured.axes)
         pitch_x, pitch_y = setting.carrier.pitch
@@ -259,7 +264,7 @@ def add_travel(space: Modelspace, seen: Shown) -> None:
 
 
 def add_zero(space: Modelspace, pose: Pose, zero: Point, length: float) -> None:
-    """Adds the part's zero point with its x axis, of the length given, and a y axis half as long."""
+    """Add the part's zero point with its x axis, of the length given, and a y axis half as long."""
     layer, (x, y) = {"layer": "PART_ZERO"}, zero
     space.add_point(pose.apply(x, y), layer)
     for end in (pose.apply(x + length, y), pose.apply(x, y + length / 2)):
@@ -271,9 +276,9 @@ PLATE_LAYERS = {"PLATE": 7, "DOWEL_HOLES": 1, "BOLT_HOLES": 5, "TEXT": 8}
 NAME_HEIGHT, TITLE_HEIGHT = 0.3, 5.0
 
 
-def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
-    """The bytes of a DXF drawing of jaw plates; the same plates give the same bytes."""
-    with drawn(PLATE_LAYERS) as document:
+def make_plates_dxf(plates: Sequence[JawPlate]) -> bytes:
+    """Return the bytes of a DXF drawing of jaw plates; the same plates give the same bytes."""
+    with make_drawing(PLATE_LAYERS) as document:
         space = document.modelspace()
 
         def write(words: str, height: float, at: Point, align: TextEntityAlignment) -> None:
@@ -293,4 +298,4 @@ def plates_dxf(plates: Sequence[JawPlate]) -> bytes:
                 words += f", {len(plate.bolts.places)} bolt holes %%c{plate.bolts.diameter:.6g} mm"
             at = (plate.outline.x0 + right, plate.outline.y1 + TITLE_HEIGHT)
             write(words, TITLE_HEIGHT / 2, at, TextEntityAlignment.BOTTOM_LEFT)
-        return content_of(document)
+        return write_drawing_bytes(document)

@@ -26,7 +26,16 @@ from workhold.geometry.segment import Point, Segment, make_segment_from_bulge
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 
-__all__ = ["Chain", "CurveReading", "Drawing", "Placement", "arc_bulges", "cleaned", "listed", "rebulged"]
+__all__ = [
+    "Chain",
+    "CurveReading",
+    "Drawing",
+    "Placement",
+    "list_arc_bulges",
+    "drop_zero_lengths",
+    "list_first_items",
+    "compute_moved_bulge",
+]
 
 
 @frozen
@@ -43,12 +52,12 @@ class Placement:
     height: float = 0.0
 
     def __call__(self, point: Sequence[float]) -> Point:
-        """The image of the x and y of a point."""
+        """Return the image of the x and y of a point."""
         x, y = point[0], point[1]
         return (self.a * x + self.c * y + self.e, self.b * x + self.d * y + self.f)
 
-    def after(self, inner: Placement) -> Placement:
-        """The map that applies ``inner`` first and then this one."""
+    def compose_after(self, inner: Placement) -> Placement:
+        """Return the map that applies ``inner`` first and then this one."""
         e, f = self((inner.e, inner.f))
         return Placement(
             self.a * inner.a + self.c * inner.b,
@@ -80,8 +89,8 @@ class Placement:
             first, second
         )
 
-    def bulges(self, bulges: Sequence[float]) -> tuple[float, ...]:
-        """Bulges of the image of a chain: a mirror image turns every arc's sense."""
+    def map_bulges(self, bulges: Sequence[float]) -> tuple[float, ...]:
+        """Return the bulges of the image of a chain: a mirror image turns every arc's sense."""
         return tuple(-b if b else 0.0 for b in bulges) if self.determinant < 0 else tuple(bulges)
 
 
@@ -112,7 +121,7 @@ class Chain:
     @property
     def entity(self) -> str:
         """The entity's name: the first label without its segment number."""
-        return without_segment(self.labels[0])
+        return strip_segment_number(self.labels[0])
 
     @property
     def segments(self) -> list[Segment]:
@@ -120,7 +129,7 @@ class Chain:
         steps = zip(pairwise(self.points), self.bulges, strict=True)
         return [make_segment_from_bulge(start, end, bulge) for (start, end), bulge in steps if start != end]
 
-    def reversed(self) -> Chain:
+    def reverse(self) -> Chain:
         return Chain(
             self.points[::-1], tuple(-b if b else 0.0 for b in reversed(self.bulges)), self.labels[::-1]
         )
@@ -169,8 +178,9 @@ class Drawing:
     looks: Mapping[str, str] = field(factory=dict)
 
 
-def arc_bulges(sweep: float) -> list[float]:
-    """Bulges of an arc of a sweep in radians (signed): one, or two halves when it is nearly a full circle.
+def list_arc_bulges(sweep: float) -> list[float]:
+    """Return the bulges of an arc of a sweep in radians (signed): one, or two halves when it is nearly a full
+    circle.
 
     Two, because a single bulge near a full circle fixes the centre badly.
     """
@@ -179,8 +189,9 @@ def arc_bulges(sweep: float) -> list[float]:
     return [tan(sweep / 4)] if abs(sweep) < 1.95 * pi else [tan(sweep / 8)] * 2
 
 
-def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
-    """Bulge of an arc whose ends have been moved a little, its centre staying as near its place as it can.
+def compute_moved_bulge(start: Point, end: Point, bulge: float, new_start: Point, new_end: Point) -> float:
+    """Return the bulge of an arc whose ends have been moved a little, its centre staying as near its place as
+    it can.
 
     The new centre is the foot of the old one on the perpendicular bisector of the new chord. So centre and
     radius change by no more than the order of the movement, times centre distance over chord, which no choice
@@ -208,13 +219,13 @@ def rebulged(start: Point, end: Point, bulge: float, new_start: Point, new_end: 
     return sign * (half / (radius + distance) if distance >= 0 else (radius - distance) / half)
 
 
-def listed(items: Sequence[str]) -> str:
-    """The first ten items, and how many more there are."""
+def list_first_items(items: Sequence[str]) -> str:
+    """Return the first ten items, and how many more there are."""
     more = len(items) - NAMED
     return "; ".join(items[:NAMED]) + (f"; and {more} more" if more > 0 else "")
 
 
-def cleaned(chains: Iterable[Chain]) -> Drawing:
+def drop_zero_lengths(chains: Iterable[Chain]) -> Drawing:
     """Drop entities and polyline segments of zero length (below 1e-7 mm), with remarks.
 
     Refuses coordinates or bulges that are not finite, or so large that the unit must be wrong.
@@ -226,28 +237,28 @@ def cleaned(chains: Iterable[Chain]) -> Drawing:
         labels, bulges = (*chain.labels, chain.labels[-1]), (*chain.bulges, 0.0)
         for label, (x, y), bulge in zip(labels, chain.points, bulges, strict=True):
             refuse_numbers(label, x, y, bulge)
-        good = without_doubled_points(chain)
+        good = drop_zero_segments(chain)
         if good is None:
-            empty.append(f"{chain.entity} at {at(chain.points[0])}")
+            empty.append(f"{chain.entity} at {format_point(chain.points[0])}")
             continue
         if len(good.bulges) < len(chain.bulges):
-            doubled.append(f"{chain.entity} at {at(chain.points[0])}")
+            doubled.append(f"{chain.entity} at {format_point(chain.points[0])}")
         kept.append(good)
     remarks = []
     if empty:
         remarks.append(
-            f"Left out {counted(len(empty), 'entity', 'entities')} of zero length: {listed(empty)}."
+            f"Left out {format_count(len(empty), 'entity', 'entities')} of zero length: {list_first_items(empty)}."
         )
     if doubled:
         remarks.append(
-            f"Left out doubled vertices of {counted(len(doubled), 'polyline', 'polylines')}: "
-            f"{listed(doubled)}."
+            f"Left out doubled vertices of {format_count(len(doubled), 'polyline', 'polylines')}: "
+            f"{list_first_items(doubled)}."
         )
     return Drawing(tuple(kept), tuple(remarks))
 
 
 def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.0) -> None:
-    """Refuses a place in mm or a bulge of a labelled segment that is not finite or absurdly large."""
+    """Refuse a place in mm or a bulge of a labelled segment that is not finite or absurdly large."""
     if not (isfinite(x) and isfinite(y) and isfinite(bulge)):
         raise InputError(
             f"{label} has a coordinate, radius or bulge that is not a finite number: correct it."
@@ -261,8 +272,8 @@ def refuse_numbers(label: str, x: float = 0.0, y: float = 0.0, bulge: float = 0.
         raise InputError(f"{label} is an arc that bulges by {bulge:.3g} times half its chord: correct it.")
 
 
-def without_doubled_points(chain: Chain) -> Chain | None:
-    """The chain without segments of zero length; None when nothing is left."""
+def drop_zero_segments(chain: Chain) -> Chain | None:
+    """Return the chain without segments of zero length; None when nothing is left."""
     if len(chain.bulges) == 1:
         return chain if dist(*chain.points) >= SHORTEST else None
     points, bulges, labels = [chain.points[0]], [], []
@@ -279,14 +290,14 @@ def without_doubled_points(chain: Chain) -> Chain | None:
     return Chain(tuple(points), tuple(bulges), tuple(labels))
 
 
-def without_segment(label: str) -> str:
-    """A label without its segment number: the name of the whole entity."""
+def strip_segment_number(label: str) -> str:
+    """Return a label without its segment number: the name of the whole entity."""
     return re.sub(r" segment \d+", "", label)
 
 
-def at(point: Point) -> str:
+def format_point(point: Point) -> str:
     return f"({point[0]:.6g}, {point[1]:.6g})"
 
 
-def counted(count: int, one: str, many: str) -> str:
+def format_count(count: int, one: str, many: str) -> str:
     return f"{count} {one if count == 1 else many}"

@@ -19,7 +19,15 @@ from attrs import evolve
 from workhold.conventions import READING, SAME_POINT
 from workhold.errors import InputError
 from workhold.files.budget import UNLIMITED, Budget
-from workhold.files.outline.chain import Chain, CurveReading, Placement, at, counted, listed, refuse_numbers
+from workhold.files.outline.chain import (
+    Chain,
+    CurveReading,
+    Placement,
+    format_count,
+    format_point,
+    list_first_items,
+    refuse_numbers,
+)
 from workhold.files.outline.joining import Loop
 from workhold.files.questions import FIT, LAYERS
 from workhold.geometry.curve_fit import FittedCurve, fit_curve
@@ -28,11 +36,11 @@ from workhold.geometry.rational import Pieces, join_pieces, mapped, split_arc
 
 __all__ = [
     "CurveReader",
-    "checked_fit",
-    "curve_remarks",
-    "departure_remark",
+    "check_fit",
+    "describe_curve_fit",
+    "describe_departure",
     "refuse_true_curves",
-    "with_chords_merged",
+    "merge_short_chords",
 ]
 
 # In mm: what a refusal proposes, finest first, and the finest that is worth anything.
@@ -43,8 +51,8 @@ MANY_ARCS = 400
 MOST_PIECES = 20_000
 
 
-def checked_fit(fit: float | None) -> float | None:
-    """A fit that can be used; refuses what is no length, or too small a one."""
+def check_fit(fit: float | None) -> float | None:
+    """Return a fit that can be used; refuse what is no length, or too small a one."""
     if fit is not None and not (isfinite(fit) and fit >= LEAST_FIT):
         raise InputError(
             f"The fit {fit:g} is not usable: give a length of {LEAST_FIT:g} mm or more, such as 0.01."
@@ -64,7 +72,7 @@ class CurveReader:
         self.found: dict[str, CurveReading] = {}
         self.count = 0
 
-    def chain(
+    def make_chain(
         self,
         points: Sequence[Sequence[float]],
         bulges: Sequence[float],
@@ -72,7 +80,7 @@ class CurveReader:
         curved: Mapping[int, Pieces],
         placement: Placement,
     ) -> Chain | None:
-        """The chain of placed segments; None where nothing is left of it.
+        """Return the chain of placed segments; None where nothing is left of it.
 
         Points, bulges and labels are of N segments, in the coordinates they are drawn in. ``curved`` has
         those that are curves, by their numbers; their bulges mean nothing. The placement is the map to mm;
@@ -86,7 +94,7 @@ class CurveReader:
             bent |= {
                 k: split_arc(ends[k], ends[k + 1], b) for k, b in enumerate(bulges) if b and k not in bent
             }
-        turned = placement.bulges(bulges)
+        turned = placement.map_bulges(bulges)
         matrix = ((placement.a, placement.c, placement.e), (placement.b, placement.d, placement.f))
         out_points, out_bulges, out_labels = [placement(points[0])], [], []
         k = 0
@@ -114,7 +122,7 @@ class CurveReader:
         return Chain(tuple(out_points), tuple(out_bulges), tuple(out_labels))
 
     def read(self, pieces: Pieces, label: str) -> FittedCurve | None:
-        """The lines and arcs for a curve in mm; None for a curve of no length.
+        """Return the lines and arcs for a curve in mm; None for a curve of no length.
 
         Raises
         ------
@@ -137,7 +145,7 @@ class CurveReader:
         return fitted
 
 
-def readings_of(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
+def select_readings(labels: Iterable[str], found: Mapping[str, CurveReading]) -> dict[str, CurveReading]:
     return {label: found[label] for label in labels if label in found}
 
 
@@ -148,23 +156,23 @@ def refuse_true_curves(
     layered: bool,
     budget: Budget | None = None,
 ) -> None:
-    """Refuses an outline with curves that are no lines or arcs, unless a fit is given.
+    """Refuse an outline with curves that are no lines or arcs, unless a fit is given.
 
     Names the first curves, and a fit that would do. ``layered`` says whether the file has layers to choose.
     ``budget`` is what reading the file may still take; None is no limit.
     """
-    true = {label: one for label, one in readings_of(labels, found).items() if not one.is_disguise}
+    true = {label: one for label, one in select_readings(labels, found).items() if not one.is_disguise}
     if fit is not None or not true:
         return
     for proposed in PROPOSED:
         fitted = [
-            (one.arcs, one.departure) if proposed == PROPOSED[0] else refitted(one, proposed, budget)
+            (one.arcs, one.departure) if proposed == PROPOSED[0] else refit_curve(one, proposed, budget)
             for one in true.values()
         ]
         arcs, away = sum(count for count, _ in fitted), max(departure for _, departure in fitted)
         if arcs <= MANY_ARCS:
             break
-    names = listed([f"{label} at {at(one.place)}" for label, one in true.items()][:3])
+    names = list_first_items([f"{label} at {format_point(one.place)}" for label, one in true.items()][:3])
     more = f" and {len(true) - 3} more" if len(true) > 3 else ""
     one_of = "is a true curve, which is" if len(true) == 1 else "are true curves, which are"
     it = "it" if len(true) == 1 else "them"
@@ -173,24 +181,24 @@ def refuse_true_curves(
     )
     raise InputError(
         f"{names}{more} {one_of} not made of lines and arcs: give {FIT} {proposed:g} to put "
-        f"{counted(arcs, 'line or arc', 'lines and arcs')} in place of {it}, nowhere farther than {away:.2g} "
+        f"{format_count(arcs, 'line or arc', 'lines and arcs')} in place of {it}, nowhere farther than {away:.2g} "
         f"mm off{leave}."
     )
 
 
-def refitted(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
-    """How many lines and arcs stand for a curve with another fit, and their departure."""
+def refit_curve(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
+    """Return how many lines and arcs stand for a curve with another fit, and their departure."""
     fitted = fit_curve(one.pieces, fit, (budget or Budget(UNLIMITED)).check_time)
     return (0, 0.0) if fitted is None else (len(fitted.bulges), fitted.departure)
 
 
-def with_chords_merged(
+def merge_short_chords(
     loops: Sequence[Loop],
     found: Mapping[str, CurveReading],
     fit: float | None,
     budget: Budget | None = None,
 ) -> tuple[tuple[Loop, ...], float, list[str]]:
-    """Loops with one line or arc for each chain of short ones, the departure in mm, and remarks.
+    """Return the loops with one line or arc for each chain of short ones, the departure in mm, and remarks.
 
     The biarcs of true curves stay as they are. What reading the file may still take is left in ``budget``;
     None is no limit.
@@ -213,35 +221,39 @@ def with_chords_merged(
         tuple(out),
         away,
         [
-            *([f"{remark}{off}: the outline has {counted(total, 'segment', 'segments')}."] if merged else []),
+            *(
+                [f"{remark}{off}: the outline has {format_count(total, 'segment', 'segments')}."]
+                if merged
+                else []
+            ),
             *describe_chords(chorded, FIT),
         ],
     )
 
 
-def curve_remarks(labels: Iterable[str], found: Mapping[str, CurveReading]) -> tuple[float, list[str]]:
-    """The largest departure of the curves among an outline's segments in mm, and what to say of them."""
-    read = readings_of(labels, found)
+def describe_curve_fit(labels: Iterable[str], found: Mapping[str, CurveReading]) -> tuple[float, list[str]]:
+    """Return the largest departure of the curves among an outline's segments in mm, and what to say of them."""
+    read = select_readings(labels, found)
     remarks = []
     for is_disguise in (True, False):
         some = [one for one in read.values() if one.is_disguise == is_disguise]
         if not some:
             continue
         away = max(one.departure for one in some)
-        curves, off = counted(len(some), "curve", "curves"), f"nowhere farther than {away:.2g} mm off"
+        curves, off = format_count(len(some), "curve", "curves"), f"nowhere farther than {away:.2g} mm off"
         if is_disguise:
             remarks.append(
                 f"Read {curves} as the lines and arcs that they stand "
                 f"for{'' if away < READING else ', ' + off}."
             )
         else:
-            arcs = counted(sum(one.arcs for one in some), "line or arc", "lines and arcs")
+            arcs = format_count(sum(one.arcs for one in some), "line or arc", "lines and arcs")
             remarks.append(f"Put {arcs} in place of {curves}, {off}.")
     return max((one.departure for one in read.values()), default=0.0), remarks
 
 
-def departure_remark(departure: float) -> list[str]:
-    """What to say of an outline that is so far, in mm, from what was drawn."""
+def describe_departure(departure: float) -> list[str]:
+    """Return what to say of an outline that is so far, in mm, from what was drawn."""
     if departure < READING:
         return []
     return [

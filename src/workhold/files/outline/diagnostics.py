@@ -16,7 +16,7 @@ import numpy as np
 from attrs import evolve
 
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, Drawing, at, counted, listed
+from workhold.files.outline.chain import Chain, Drawing, format_count, format_point, list_first_items
 from workhold.files.outline.joining import Stray, join
 from workhold.files.outline.nesting import DrawnPart
 from workhold.files.questions import JOIN_TOLERANCE, LAYERS, PART_NUMBER, UNIT, UnitAskedError
@@ -28,15 +28,15 @@ from workhold.units import INCH, PIXELS
 __all__ = [
     "refuse_nothing_closed",
     "refuse_open_outline",
-    "size_of",
-    "stray_remarks",
-    "unit_asked",
-    "with_layers_named",
+    "measure_size",
+    "describe_strays",
+    "make_unit_question",
+    "name_layers_in_error",
 ]
 
 
-def size_of(chains: Sequence[Chain]) -> tuple[float, float] | None:
-    """Width and height in mm of the smallest upright rectangle around chains; None without any."""
+def measure_size(chains: Sequence[Chain]) -> tuple[float, float] | None:
+    """Return the width and height in mm of the smallest upright rectangle around chains; None without any."""
     segments = [segment for chain in chains for segment in chain.segments]
     if not segments:
         return None
@@ -45,22 +45,22 @@ def size_of(chains: Sequence[Chain]) -> tuple[float, float] | None:
 
 
 def has_sound_numbers(chain: Chain) -> bool:
-    """Whether all of a chain's numbers are such as a drawing in any unit may have."""
+    """Return whether all of a chain's numbers are such as a drawing in any unit may have."""
     return all(abs(value) <= MOST_RADIUS for value in chain.bulges) and all(
         abs(x) <= MOST_RADIUS and abs(y) <= MOST_RADIUS for x, y in chain.points
     )
 
 
-def unit_asked(
+def make_unit_question(
     lacking: str, chains: Sequence[Chain], pixels: float | None = None, in_pixels: bool = False
 ) -> UnitAskedError:
-    """The question for the unit of a drawing that lacks it, with what it would be in each.
+    """Return the question for the unit of a drawing that lacks it, with what it would be in each.
 
     ``lacking`` is what is not known, up to the colon. Chains are what is drawn, a unit of the drawing for a
     mm; nothing where that cannot be read. ``pixels`` is how many pixels one unit of the drawing is, None
     where drawings have none; ``in_pixels`` says whether the drawing says that it is in pixels.
     """
-    size = size_of(chains) if all(map(has_sound_numbers, chains)) else None
+    size = measure_size(chains) if all(map(has_sound_numbers, chains)) else None
     shown = of_pixels = ""
     counts = f"{', '.join(f'px{count}' for count in PIXELS[:-1])} or px{PIXELS[-1]}"
     if size is not None:
@@ -102,16 +102,16 @@ def refuse_nothing_closed(strays: Sequence[Stray], remarks: Sequence[str]) -> No
 
 
 def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
-    """Refuses to take a hole for the part when the outline around it is nearly closed, but not quite."""
+    """Refuse to take a hole for the part when the outline around it is nearly closed, but not quite."""
     for stray in strays:
         box = box_around(stray.chain.segments)
         gap, size = dist(stray.chain.points[0], stray.chain.points[-1]), dist(box[:2], box[2:])
-        if surrounds(box, part.bounds) and gap < NEARLY_CLOSED * size:
+        if surrounds_box(box, part.bounds) and gap < NEARLY_CLOSED * size:
             raise InputError(
                 f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all "
                 f"the same, give {PART_NUMBER} {part.number}."
             )
-    enough = gap_around(part, strays)
+    enough = find_gap_around_part(part, strays)
     if enough is not None:
         raise InputError(
             f"the outline around {part} is not closed: {open_ends(strays, enough)} To use the inner part "
@@ -119,8 +119,8 @@ def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
         )
 
 
-def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
-    """The smallest gap with which open pieces make an outline around a part; None without one."""
+def find_gap_around_part(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
+    """Return the smallest gap with which open pieces make an outline around a part; None without one."""
     chains = [stray.chain for stray in strays]
     if not 1 < len(chains) <= MOST_JOINED:
         return None
@@ -134,18 +134,18 @@ def gap_around(part: DrawnPart, strays: Sequence[Stray]) -> float | None:
         except InputError:
             continue
         loops = () if joined.junctions else joined.loops
-        if any(surrounds(box_around(loop_segments(loop.vertices)), part.bounds) for loop in loops):
+        if any(surrounds_box(box_around(loop_segments(loop.vertices)), part.bounds) for loop in loops):
             return gap
     return None
 
 
-def surrounds(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Whether a bounding box reaches out of another one on every side."""
+def surrounds_box(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Return whether a bounding box reaches out of another one on every side."""
     return a[0] < b[0] and a[1] < b[1] and a[2] > b[2] and a[3] > b[3]
 
 
 def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
-    """The nearest open ends, how far apart they are, and the remedy; a gap that is enough, if known."""
+    """Return the nearest open ends, how far apart they are, and the remedy; a gap that is enough, if known."""
     ends: list[tuple[Point, str]] = []
     for stray in strays:
         ends += [(stray.chain.points[0], stray.first), (stray.chain.points[-1], stray.last)]
@@ -159,7 +159,7 @@ def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
         found.append((float(away[nearest]), point, name, ends[nearest][1]))
     found.sort(key=lambda item: item[0])
     words = [
-        f"{name} ends at {at(point)}, {gap:.3g} mm from the nearest other end ({other})"
+        f"{name} ends at {format_point(point)}, {gap:.3g} mm from the nearest other end ({other})"
         for gap, point, name, other in found[:ENDS_NAMED]
     ]
     more = f", and {len(ends) - len(words)} more ends are open" if len(ends) > len(words) else ""
@@ -169,20 +169,21 @@ def open_ends(strays: Sequence[Stray], enough: float | None = None) -> str:
     return f"{'; '.join(words)}{more}; close the drawing, or {larger}."
 
 
-def stray_remarks(strays: Sequence[Stray]) -> list[str]:
-    """What to say about strays when a closed outline remains."""
+def describe_strays(strays: Sequence[Stray]) -> list[str]:
+    """Return what to say about strays when a closed outline remains."""
     if not strays:
         return []
-    places = listed(
+    places = list_first_items(
         [
-            f"{stray.first} at {at(stray.chain.points[0])} to {stray.last} at {at(stray.chain.points[-1])}"
+            f"{stray.first} at {format_point(stray.chain.points[0])} to "
+            f"{stray.last} at {format_point(stray.chain.points[-1])}"
             if stray.first != stray.last
-            else f"{stray.first} from {at(stray.chain.points[0])} to {at(stray.chain.points[-1])}"
+            else f"{stray.first} from {format_point(stray.chain.points[0])} to {format_point(stray.chain.points[-1])}"
             for stray in strays
         ]
     )
     return [
-        f"Left out {counted(len(strays), 'open piece', 'open pieces')} outside any closed outline: {places}."
+        f"Left out {format_count(len(strays), 'open piece', 'open pieces')} outside any closed outline: {places}."
     ]
 
 
@@ -190,8 +191,11 @@ def stray_remarks(strays: Sequence[Stray]) -> list[str]:
 MOST_LAYERS = 12
 
 
-def with_layers_named(error: InputError, drawing: Drawing, usable: Callable[[Drawing], bool]) -> InputError:
-    """What is wrong with an outline, the layers that are named in it, and a choice of layers that is usable.
+def name_layers_in_error(
+    error: InputError, drawing: Drawing, usable: Callable[[Drawing], bool]
+) -> InputError:
+    """Return what is wrong with an outline, the layers that are named in it, and a choice of layers that is
+    usable.
 
     ``usable`` says whether a part can be read of a drawing.
     """

@@ -26,18 +26,25 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_POINT, SHORTEST
 from workhold.errors import InputError
 from workhold.files.budget import UNLIMITED, Budget
-from workhold.files.outline.chain import Chain, at, counted, listed, rebulged, without_segment
+from workhold.files.outline.chain import (
+    Chain,
+    compute_moved_bulge,
+    format_count,
+    format_point,
+    list_first_items,
+    strip_segment_number,
+)
 from workhold.files.questions import JOIN_TOLERANCE
 from workhold.geometry.segment import Point
 
-__all__ = ["Joined", "Junction", "Loop", "Stray", "close_pairs", "groups", "join"]
+__all__ = ["Joined", "Junction", "Loop", "Stray", "close_pairs", "group_by_pairs", "join"]
 
 # More distinct points than this within one tolerance: the tolerance is larger than the drawing's details.
 CROWD = 64
 
 
 def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int64]:
-    """Pairs (P, 2) of points (N, 2) at most a tolerance apart, in mm.
+    """Return the pairs (P, 2) of points (N, 2) at most a tolerance apart, in mm.
 
     Points that are exactly equal are paired in a row, first to second, second to third; distinct points in
     all pairs. Refuses so many points within the tolerance that it cannot be meant.
@@ -48,14 +55,14 @@ def close_pairs(points: NDArray[np.float64], tolerance: float) -> NDArray[np.int
     equal = np.all(points[order[1:]] == points[order[:-1]], axis=1)
     pairs = [np.column_stack((order[:-1][equal], order[1:][equal]))]
     distinct = order[np.concatenate(([True], ~equal))]
-    pairs += [distinct[p] for p in pairs_in_strips(points[distinct], tolerance)]
+    pairs += [distinct[p] for p in find_near_pairs(points[distinct], tolerance)]
     found = np.concatenate(pairs).astype(np.int64)
     found.sort(axis=1)
     return np.unique(found, axis=0)
 
 
-def pairs_in_strips(points: NDArray[np.float64], tolerance: float) -> list[NDArray[np.int64]]:
-    """Index pairs of distinct points at most a tolerance apart; a pair may come twice.
+def find_near_pairs(points: NDArray[np.float64], tolerance: float) -> list[NDArray[np.int64]]:
+    """Return the index pairs of distinct points at most a tolerance apart; a pair may come twice.
 
     Vertical strips two tolerances wide, laid twice with an offset of one, put every close pair in a common
     strip.
@@ -81,8 +88,8 @@ def pairs_in_strips(points: NDArray[np.float64], tolerance: float) -> list[NDArr
     return pairs
 
 
-def groups(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(count,) groups of items of which pairs belong together; each is named by its smallest item."""
+def group_by_pairs(count: int, pairs: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return (count,) groups of items of which pairs belong together; each is named by its smallest item."""
     parent = list(range(count))
 
     def root(item: int) -> int:
@@ -143,8 +150,8 @@ class Junction:
     within: str = ""
 
     def __str__(self) -> str:
-        names = listed(self.labels)
-        return f"{len(self.labels)} ends meet{self.within} at {at(self.point)} ({names})"
+        names = list_first_items(self.labels)
+        return f"{len(self.labels)} ends meet{self.within} at {format_point(self.point)} ({names})"
 
     @property
     def refusal(self) -> InputError:
@@ -173,83 +180,85 @@ class Joined:
 
 
 def join(chains: Sequence[Chain], tolerance: float, budget: Budget | None = None) -> Joined:
-    """Joins chains in mm, without segments of zero length, end to end across gaps up to a tolerance.
+    """Join chains in mm, without segments of zero length, end to end across gaps up to a tolerance.
 
     ``budget`` is what reading the file may still take; None is no limit. Refuses so many ends within the
     tolerance that it cannot be meant.
     """
     budget = budget or Budget(UNLIMITED)
     open_chains = [c for c in chains if not c.closed]
-    loops = [closed_loop(c) for c in chains if c.closed]
+    loops = [make_closed_loop(c) for c in chains if c.closed]
     node = end_nodes(open_chains)
-    open_chains, node, repeated = without_repeats(open_chains, node, budget)
-    partner, junctions = joined_ends(open_chains, node, tolerance)
-    is_tangled = hanging_together(node, partner, [end for _, ends in junctions for end in ends])
+    open_chains, node, repeated = drop_repeated_chains(open_chains, node, budget)
+    partner, junctions = join_ends(open_chains, node, tolerance)
+    is_tangled = find_chains_connected_to(node, partner, [end for _, ends in junctions for end in ends])
     gaps: list[tuple[Point, float]] = []
     strays = []
-    for run, is_closed in runs(partner):
-        budget.work(len(run))
+    for run, is_closed in list_joined_runs(partner):
+        budget.count_steps(len(run))
         if is_tangled[run[0][0]]:
             continue
-        members = [open_chains[k].reversed() if turned else open_chains[k] for k, turned in run]
-        whole = connected(members, is_closed, gaps)
+        members = [open_chains[k].reverse() if turned else open_chains[k] for k, turned in run]
+        whole = connect_chains(members, is_closed, gaps)
         if is_closed:
             if len(whole.bulges) > 2 or any(whole.bulges):
-                loops.append(closed_loop(whole))
+                loops.append(make_closed_loop(whole))
         else:
             strays.append(Stray(whole, members[0].entity, members[-1].entity))
-    loops, repeated_loops = without_repeated_loops(loops)
+    loops, repeated_loops = drop_repeated_loops(loops)
     repeated += repeated_loops
     remarks = []
     if repeated:
         remarks.append(
-            f"Left out {counted(len(repeated), 'entity', 'entities')} drawn twice: {listed(repeated)}."
+            f"Left out {format_count(len(repeated), 'entity', 'entities')} drawn twice: {list_first_items(repeated)}."
         )
     if gaps:
         gaps.sort(key=lambda gap: -gap[1])
-        places = listed([f"{size:.3g} mm at {at(point)}" for point, size in gaps])
-        remarks.append(f"Closed {counted(len(gaps), 'gap', 'gaps')} between ends: {places}.")
+        places = list_first_items([f"{size:.3g} mm at {format_point(point)}" for point, size in gaps])
+        remarks.append(f"Closed {format_count(len(gaps), 'gap', 'gaps')} between ends: {places}.")
     tangled = tuple(chain for chain, tangles in zip(open_chains, is_tangled, strict=True) if tangles)
     met = tuple(junction for junction, _ in junctions)
     return Joined(tuple(loops), tuple(strays), tuple(remarks), met, tangled)
 
 
-def hanging_together(node: NDArray[np.int64], partner: Sequence[int], ends: Sequence[int]) -> list[bool]:
-    """For every chain whether it hangs together, by common ends, with one of which an end is among these."""
+def find_chains_connected_to(
+    node: NDArray[np.int64], partner: Sequence[int], ends: Sequence[int]
+) -> list[bool]:
+    """Return which chains are connected, through common ends, to a chain with one of these ends."""
     count = len(node) // 2
     if not ends:
         return [False] * count
     pairs = [(end // 2, other // 2) for end, other in enumerate(partner) if other >= 0]
     first: dict[int, int] = {}
     pairs += [(first.setdefault(number, end // 2), end // 2) for end, number in enumerate(node.tolist())]
-    name = groups(count, np.array(pairs, dtype=np.int64).reshape(-1, 2))
+    name = group_by_pairs(count, np.array(pairs, dtype=np.int64).reshape(-1, 2))
     tangled = {int(name[end // 2]) for end in ends}
     return [int(one) in tangled for one in name]
 
 
-def closed_loop(chain: Chain) -> Loop:
+def make_closed_loop(chain: Chain) -> Loop:
     rows = [(x, y, bulge) for (x, y), bulge in zip(chain.points[:-1], chain.bulges, strict=True)]
     return Loop(np.array(rows, dtype=np.float64), chain.labels)
 
 
 def end_nodes(chains: Sequence[Chain]) -> NDArray[np.int64]:
-    """(2 N,) numbers of the points at which the ends of N chains lie; ends within 1e-9 mm share one."""
+    """Return (2 N,) numbers of the points at which the ends of N chains lie; ends within 1e-9 mm share one."""
     ends = np.array([p for c in chains for p in (c.points[0], c.points[-1])], dtype=np.float64).reshape(-1, 2)
-    return groups(len(ends), close_pairs(ends, SAME_POINT))
+    return group_by_pairs(len(ends), close_pairs(ends, SAME_POINT))
 
 
-def without_repeats(
+def drop_repeated_chains(
     chains: Sequence[Chain], node: NDArray[np.int64], budget: Budget
 ) -> tuple[list[Chain], NDArray[np.int64], list[str]]:
-    """Keeps one of chains that were drawn twice; also the kept ones' nodes, and the others' names."""
+    """Keep one of chains that were drawn twice; also the kept ones' nodes, and the others' names."""
     between: defaultdict[tuple[int, int, int], list[int]] = defaultdict(list)
     kept: list[int] = []
     repeated: list[str] = []
     for k, chain in enumerate(chains):
         first, last = sorted((int(node[2 * k]), int(node[2 * k + 1])))
         rivals = between[first, last, len(chain.bulges)]
-        budget.work(1 + len(rivals))
-        twin = next((j for j in rivals if same_course(chains[j], chain)), None)
+        budget.count_steps(1 + len(rivals))
+        twin = next((j for j in rivals if run_alike(chains[j], chain)), None)
         if twin is None:
             rivals.append(k)
             kept.append(k)
@@ -263,37 +272,37 @@ def without_repeats(
     )
 
 
-def same_course(a: Chain, b: Chain) -> bool:
-    """Whether two chains run through the same points and arcs, in either direction."""
+def run_alike(a: Chain, b: Chain) -> bool:
+    """Return whether two chains run through the same points and arcs, in either direction."""
     return any(
         all(dist(p, q) <= SAME_POINT for p, q in zip(a.points, c.points, strict=True))
         and all(abs(p - q) <= SAME_POINT for p, q in zip(a.bulges, c.bulges, strict=True))
-        for c in (b, b.reversed())
+        for c in (b, b.reverse())
     )
 
 
-def without_repeated_loops(loops: Iterable[Loop]) -> tuple[list[Loop], list[str]]:
-    """Keeps one of loops that were drawn twice (same vertices and arcs); also the names of those left out."""
+def drop_repeated_loops(loops: Iterable[Loop]) -> tuple[list[Loop], list[str]]:
+    """Keep one of loops that were drawn twice (same vertices and arcs); also the names of those left out."""
     kept: dict[object, Loop] = {}
     repeated = []
     for loop in loops:
         xy, bulges = np.round(loop.vertices[:, :2], 6) + 0.0, np.round(np.abs(loop.vertices[:, 2]), 6)
-        middles = np.round(arc_middles(loop.vertices), 6) + 0.0
+        middles = np.round(compute_arc_middles(loop.vertices), 6) + 0.0
         key = (
             tuple(sorted(map(tuple, xy.tolist()))),
             tuple(sorted(map(tuple, middles.tolist()))),
             len(bulges),
         )
         if key in kept:
-            names = (without_segment(loop.labels[0]), without_segment(kept[key].labels[0]))
+            names = (strip_segment_number(loop.labels[0]), strip_segment_number(kept[key].labels[0]))
             repeated.append(f"{names[0]} repeats {names[1]}")
         else:
             kept[key] = loop
     return list(kept.values()), repeated
 
 
-def arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(N, 2) middle points of the segments of a loop: half a chord times the bulge to the chord's right."""
+def compute_arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return (N, 2) middle points of the segments of a loop: half a chord times the bulge to the chord's right."""
     start, end = vertices[:, :2], np.roll(vertices[:, :2], -1, axis=0)
     chord = end - start
     right = np.column_stack((chord[:, 1], -chord[:, 0]))
@@ -301,10 +310,10 @@ def arc_middles(vertices: NDArray[np.float64]) -> NDArray[np.float64]:
     return middles
 
 
-def joined_ends(
+def join_ends(
     chains: Sequence[Chain], node: NDArray[np.int64], tolerance: float
 ) -> tuple[list[int], list[tuple[Junction, Sequence[int]]]]:
-    """The end that every end is joined to, or -1, and the junctions with their ends."""
+    """Return the end that every end is joined to, or -1, and the junctions with their ends."""
     partner = [-1] * len(node)
     junctions = list[tuple[Junction, Sequence[int]]]()
     at_node: defaultdict[int, list[int]] = defaultdict(list)
@@ -312,7 +321,7 @@ def joined_ends(
         at_node[number].append(end)
     for ends in at_node.values():
         if len(ends) > 2:
-            junctions.append((junction(chains, ends), ends))
+            junctions.append((make_junction(chains, ends), ends))
         if len(ends) == 2:
             partner[ends[0]], partner[ends[1]] = ends[1], ends[0]
     meeting = {end for _, ends in junctions for end in ends}
@@ -323,7 +332,7 @@ def joined_ends(
 def close_gaps(
     chains: Sequence[Chain], partner: list[int], loose: Sequence[int], tolerance: float
 ) -> list[tuple[Junction, Sequence[int]]]:
-    """Joins open ends across gaps, nearest first, writing into ``partner``.
+    """Join open ends across gaps, nearest first, writing into ``partner``.
 
     Returns the junctions where a third end lies within the tolerance of a gap's ends; refuses very many.
     """
@@ -337,7 +346,7 @@ def close_gaps(
     candidates = []
     for position in np.argsort(apart, kind="stable").tolist():
         i, j = (loose[k] for k in pairs[position].tolist())
-        if i // 2 != j // 2 or length(chains[i // 2]) > LOOP_OVER_GAP * apart[position]:
+        if i // 2 != j // 2 or measure_chain_length(chains[i // 2]) > LOOP_OVER_GAP * apart[position]:
             candidates.append((i, j))
     for i, j in candidates:
         if partner[i] < 0 and partner[j] < 0:
@@ -347,12 +356,12 @@ def close_gaps(
         if (partner[i] < 0) != (partner[j] < 0):
             joined = i if partner[j] < 0 else j
             ends = sorted({i, j, partner[joined]})
-            found.append((junction(chains, ends, f" within {tolerance:g} mm"), ends))
+            found.append((make_junction(chains, ends, f" within {tolerance:g} mm"), ends))
     return found
 
 
-def length(chain: Chain) -> float:
-    """A chain's length in mm, arcs counted a little short (chord to the middle point, twice)."""
+def measure_chain_length(chain: Chain) -> float:
+    """Return a chain's length in mm, arcs counted a little short (chord to the middle point, twice)."""
     return sum(
         hypot(q[0] - p[0], q[1] - p[1]) * hypot(1.0, bulge)
         for p, q, bulge in zip(chain.points, chain.points[1:], chain.bulges, strict=False)
@@ -363,13 +372,13 @@ def end_point(chains: Sequence[Chain], end: int) -> Point:
     return chains[end // 2].points[-(end % 2)]
 
 
-def junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
+def make_junction(chains: Sequence[Chain], ends: Sequence[int], within: str = "") -> Junction:
     names = tuple(chains[end // 2].labels[-(end % 2)] for end in ends)
     return Junction(end_point(chains, ends[0]), names, within)
 
 
-def runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, bool]], bool]]:
-    """Runs of joined chains: (chain, whether it is run backwards) in order, and whether the run closes."""
+def list_joined_runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, bool]], bool]]:
+    """Yield the runs of joined chains: (chain, whether it is run backwards) in order, and whether the run closes."""
     done = [False] * (len(partner) // 2)
     starts = [end for end, other in enumerate(partner) if other < 0]
     for start in [*starts, *range(0, len(partner), 2)]:
@@ -384,8 +393,8 @@ def runs(partner: Sequence[int]) -> Iterable[tuple[list[tuple[int, bool]], bool]
         yield run, entry >= 0
 
 
-def connected(members: Sequence[Chain], is_closed: bool, gaps: list[tuple[Point, float]]) -> Chain:
-    """One chain from chains in running order; ends that differ move to their mean, and each gap is noted."""
+def connect_chains(members: Sequence[Chain], is_closed: bool, gaps: list[tuple[Point, float]]) -> Chain:
+    """Return one chain from chains in running order; ends that differ move to their mean, and each gap is noted."""
     firsts = [c.points[0] for c in members]
     lasts = [c.points[-1] for c in members]
     for k in range(0 if is_closed else 1, len(members)):
@@ -401,7 +410,7 @@ def connected(members: Sequence[Chain], is_closed: bool, gaps: list[tuple[Point,
     bulges: list[float] = []
     labels: list[str] = []
     for chain, first, last in zip(members, firsts, lasts, strict=True):
-        moved = with_ends(chain, first, last)
+        moved = move_chain_ends(chain, first, last)
         for point, bulge, label in zip(moved.points[1:], moved.bulges, moved.labels, strict=True):
             if dist(points[-1], point) >= SHORTEST:
                 points.append(point)
@@ -412,12 +421,12 @@ def connected(members: Sequence[Chain], is_closed: bool, gaps: list[tuple[Point,
     return Chain(tuple(points), tuple(bulges), tuple(labels))
 
 
-def with_ends(chain: Chain, first: Point, last: Point) -> Chain:
-    """A chain with its ends moved a little; arcs there keep their centres as well as they can."""
+def move_chain_ends(chain: Chain, first: Point, last: Point) -> Chain:
+    """Return a chain with its ends moved a little; arcs there keep their centres as well as they can."""
     points, bulges = list(chain.points), list(chain.bulges)
     points[0], points[-1] = first, last
     for k in {0, len(bulges) - 1}:
         start, end = chain.points[k], chain.points[k + 1]
         if max(dist(start, points[k]), dist(end, points[k + 1])) > SAME_POINT:
-            bulges[k] = rebulged(start, end, bulges[k], points[k], points[k + 1])
+            bulges[k] = compute_moved_bulge(start, end, bulges[k], points[k], points[k + 1])
     return evolve(chain, points=tuple(points), bulges=tuple(bulges))

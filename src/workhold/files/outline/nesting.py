@@ -15,7 +15,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import TOUCHING
-from workhold.errors import InputError, plain, shortened
+from workhold.errors import InputError, make_printable, shorten_middle
 from workhold.files.budget import UNLIMITED, Budget
 from workhold.files.outline.joining import Loop
 from workhold.geometry.loop import (
@@ -30,7 +30,7 @@ from workhold.geometry.segment import Segment, box_around, segment_rows
 from workhold.geometry.subdivision import subdivide
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["DrawnPart", "as_one", "nest", "overlap", "refuse_loops_across"]
+__all__ = ["DrawnPart", "join_loops_as_one_part", "nest_loops", "boxes_meet", "refuse_loops_across"]
 
 
 # mm. How far beside a line it is asked whether both of two outlines lie there.
@@ -77,7 +77,7 @@ class MeasuredLoop:
     box: tuple[float, float, float, float]
 
     @classmethod
-    def of(cls, loop: Loop) -> MeasuredLoop:
+    def from_loop(cls, loop: Loop) -> MeasuredLoop:
         segments = loop_segments(loop.vertices)
         area = compute_signed_area(segments)
         if area < 0:
@@ -85,14 +85,14 @@ class MeasuredLoop:
         return cls(loop, segments, segment_rows(segments), abs(area), box_around(segments))
 
 
-def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart, ...]:
-    """Sorts loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later.
+def nest_loops(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart, ...]:
+    """Sort loops into parts, by decreasing area; loops that cross are sorted somehow, and refused later.
 
     Outlines of one nest lie beside each other, though their borders touch. What reading the file may still
     take is left in ``budget``; None is no limit.
     """
     budget = budget or Budget(UNLIMITED)
-    rings = sorted(map(MeasuredLoop.of, loops), key=lambda r: -r.area)
+    rings = sorted(map(MeasuredLoop.from_loop, loops), key=lambda r: -r.area)
     nests = np.array([ring.loop.nest for ring in rings])
     boxes = np.array([r.box for r in rings]).reshape(-1, 4)
     depths: list[int] = []
@@ -106,8 +106,8 @@ def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart
         # The smallest loop around it says how deep it lies, unless loops cross.
         parent = None
         for j in reversed(np.flatnonzero(around).tolist()):
-            budget.work()
-            if lies_in(inner, rings[j]):
+            budget.count_steps()
+            if lies_inside(inner, rings[j]):
                 parent = j
                 break
         depths.append(0 if parent is None else depths[parent] + 1)
@@ -127,8 +127,8 @@ def nest(loops: Sequence[Loop], budget: Budget | None = None) -> tuple[DrawnPart
     )
 
 
-def lies_in(inner: MeasuredLoop, outer: MeasuredLoop) -> bool:
-    """Whether a loop lies in another one, which may share lines with it from either side."""
+def lies_inside(inner: MeasuredLoop, outer: MeasuredLoop) -> bool:
+    """Return whether a loop lies in another one, which may share lines with it from either side."""
     x, y = inner.segments[0].start
     if outline_distances(np.array([(x, y)]), outer.rows)[0] > TOUCHING:
         return bool(is_inside(x, y, outer.rows))
@@ -138,9 +138,9 @@ def lies_in(inner: MeasuredLoop, outer: MeasuredLoop) -> bool:
     return bool(is_inside(float(farthest[0]), float(farthest[1]), outer.rows))
 
 
-def as_one(loops: Sequence[Loop]) -> DrawnPart:
-    """Loops of one workpiece as one part, also where it has several outer ones."""
-    parts = nest(loops)
+def join_loops_as_one_part(loops: Sequence[Loop]) -> DrawnPart:
+    """Return the loops of one workpiece as one part, also where it has several outer ones."""
+    parts = nest_loops(loops)
     x0, y0, x1, y1 = zip(*(part.bounds for part in parts), strict=True)
     inside = tuple(loop for part in parts for loop in part.loops)
     bounds = min(x0), min(y0), max(x1), max(y1)
@@ -148,22 +148,22 @@ def as_one(loops: Sequence[Loop]) -> DrawnPart:
 
 
 def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Budget | None = None) -> None:
-    """Refuses a part that loops of other parts cross or touch: holes that were drawn half outside.
+    """Refuse a part that loops of other parts cross or touch: holes that were drawn half outside.
 
     Another outline may lie along its own, on the other side: neighbours of a nest that share a cut.
     """
     budget = budget or Budget(UNLIMITED)
     comparisons = Comparisons("the part")
-    own = [MeasuredLoop.of(loop) for loop in part.loops]
+    own = [MeasuredLoop.from_loop(loop) for loop in part.loops]
     shapes = [LoopShape.of(loop_segments(one.loop.vertices)) for one in own]
     for other in others:
-        budget.work()
-        if not overlap(part.bounds, other.bounds):
+        budget.count_steps()
+        if not boxes_meet(part.bounds, other.bounds):
             continue
-        for theirs in map(MeasuredLoop.of, other.loops):
+        for theirs in map(MeasuredLoop.from_loop, other.loops):
             for ours, shape in zip(own, shapes, strict=True):
-                budget.work()
-                if not overlap(ours.box, theirs.box) or 0 != ours.loop.nest == theirs.loop.nest:
+                budget.count_steps()
+                if not boxes_meet(ours.box, theirs.box) or 0 != ours.loop.nest == theirs.loop.nest:
                     continue
                 try:
                     refuse_meeting_loops(
@@ -175,12 +175,12 @@ def refuse_loops_across(part: DrawnPart, others: Sequence[DrawnPart], budget: Bu
                     )
                 except InputError:
                     outer = ours is own[0] and theirs.loop is other.loops[0]
-                    if not (outer and lie_side_by_side(ours, theirs)):
+                    if not (outer and touch_from_outside(ours, theirs)):
                         raise
 
 
-def lie_side_by_side(one: MeasuredLoop, other: MeasuredLoop) -> bool:
-    """Whether two loops touch each other from outside: no piece of either lies in the other."""
+def touch_from_outside(one: MeasuredLoop, other: MeasuredLoop) -> bool:
+    """Return whether two loops touch each other from outside: no piece of either lies in the other."""
     carriers = subdivide([*one.segments, *other.segments], comparisons=Comparisons("the part"))
     for carrier in carriers:
         for low, high in carrier.pieces():
@@ -192,18 +192,18 @@ def lie_side_by_side(one: MeasuredLoop, other: MeasuredLoop) -> bool:
     return True
 
 
-def overlap(a: Sequence[float], b: Sequence[float]) -> bool:
-    """Whether two bounding boxes meet."""
+def boxes_meet(a: Sequence[float], b: Sequence[float]) -> bool:
+    """Return whether two bounding boxes meet."""
     return a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
 
 
-def chosen_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
-    """The part of a number, or the largest; refuses a number of no part, and a name."""
+def choose_part(parts: Sequence[DrawnPart], number: int | str | None) -> DrawnPart:
+    """Return the part of a number, or the largest; refuse a number of no part, and a name."""
     if number is None:
         return parts[0]
     if isinstance(number, str):
         raise InputError(
-            f"There is no part {shortened(plain(number))!r}: only solids of a STEP file have names, so give "
+            f"There is no part {shorten_middle(make_printable(number))!r}: only solids of a STEP file have names, so give "
             "a number."
         )
     if not 1 <= number <= len(parts):

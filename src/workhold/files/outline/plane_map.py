@@ -24,13 +24,13 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.files.outline.chain import Chain, rebulged
-from workhold.files.outline.joining import Loop, close_pairs, groups
+from workhold.files.outline.chain import Chain, compute_moved_bulge
+from workhold.files.outline.joining import Loop, close_pairs, group_by_pairs
 from workhold.geometry.loop import Comparisons, compute_signed_area, loop_segments
 from workhold.geometry.segment import Arc, Point, Segment, bounding_box, make_segment_from_bulge
 from workhold.geometry.subdivision import CutCarrier, subdivide
 
-__all__ = ["Cluster", "clusters_of"]
+__all__ = ["Cluster", "make_clusters"]
 
 # More lines and arcs are no nest, and pairs of them that come near each other.
 MOST_SEGMENTS, MOST_PAIRS = 20_000, 1_000_000
@@ -77,8 +77,8 @@ class Cluster:
     box: tuple[float, float, float, float]
 
 
-def clusters_of(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
-    """The lines and arcs of some chains, cut where they meet, by what hangs together; refuses too many.
+def make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
+    """Return the lines and arcs of some chains, cut where they meet, by what hangs together; refuse too many.
 
     Ends that are within the tolerance in mm of others, or of a line or an arc, lie on it.
     """
@@ -92,21 +92,22 @@ def clusters_of(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
     comparisons = Comparisons("the drawing", MOST_PAIRS)
     if len(segments) > MOST_SEGMENTS:
         comparisons.spend(MOST_PAIRS + 1)
-    points, edges = plane_map(segments, tolerance, comparisons)
-    faces = faces_of(points, edges)
+    points, edges = make_plane_map(segments, tolerance, comparisons)
+    faces = trace_region_borders(points, edges)
     return [
-        cluster(points, edges, faces, members, labels, numbers) for members in connected(len(points), edges)
+        make_cluster(points, edges, faces, members, labels, numbers)
+        for members in group_connected_edges(len(points), edges)
     ]
 
 
-def plane_map(
+def make_plane_map(
     segments: Sequence[Segment], tolerance: float, comparisons: Comparisons
 ) -> tuple[NDArray[np.float64], list[Edge]]:
-    """The (N, 2) nodes of some lines and arcs, and the edges between them."""
-    touching = ends_on(segments, max(tolerance, NODE), comparisons)
+    """Return the (N, 2) nodes of some lines and arcs, and the edges between them."""
+    touching = find_ends_on_segments(segments, max(tolerance, NODE), comparisons)
     carriers = subdivide(segments, [(segments[k], point) for k, point in touching], comparisons)
     pieces = [
-        (carrier, low, high, owners_of(carrier, (low + high) / 2))
+        (carrier, low, high, find_owners_at(carrier, (low + high) / 2))
         for carrier in carriers
         for low, high in carrier.pieces()
     ]
@@ -116,22 +117,22 @@ def plane_map(
     # A group is named by its smallest number: what was drawn comes before what was computed.
     pairs = close_pairs(places, NODE)
     across = [
-        (int(np.hypot(*(places - point).T).argmin()), nearest_other(places, segments[k], point))
+        (int(np.hypot(*(places - point).T).argmin()), find_nearest_place(places, segments[k], point))
         for k, point in touching
     ]
     pairs = np.concatenate([pairs, np.array(across, dtype=np.int64).reshape(-1, 2)])
-    node = groups(len(places), pairs)
+    node = group_by_pairs(len(places), pairs)
     first_end = len(drawn)
     edges: dict[tuple[int, int], list[tuple[Edge, Point]]] = defaultdict(list)
     for k, (carrier, low, high, owners) in enumerate(pieces):
         one, other = int(node[first_end + 2 * k]), int(node[first_end + 2 * k + 1])
         if one == other:
             continue
-        bulge = bulge_between(carrier, low, high)
+        bulge = compute_bulge_between(carrier, low, high)
         start, end = ends[2 * k], ends[2 * k + 1]
         new = tuple(places[one].tolist()), tuple(places[other].tolist())
         if max(dist(start, new[0]), dist(end, new[1])) > NODE:
-            bulge = rebulged(start, end, bulge, new[0], new[1])
+            bulge = compute_moved_bulge(start, end, bulge, new[0], new[1])
         if one > other:
             one, other, bulge = other, one, -bulge
         middle = carrier.at((low + high) / 2)
@@ -144,13 +145,15 @@ def plane_map(
             kept, place = twins[twin]
             twins[twin] = Edge(one, other, kept.bulge, (*kept.owners, *owners)), place
     found = [edge for twins in edges.values() for edge, _ in twins]
-    return places, with_gaps_closed(places, found, tolerance)
+    return places, close_gaps(places, found, tolerance)
 
 
-def ends_on(
+def find_ends_on_segments(
     segments: Sequence[Segment], tolerance: float, comparisons: Comparisons
 ) -> list[tuple[int, Point]]:
-    """Ends of segments that lie on another one, away from its ends, to a tolerance: its number and the end."""
+    """Return the ends of segments that lie on another one, away from its ends, to a tolerance: its number and
+    the end.
+    """
     ends = np.unique(
         np.array([end for one in segments for end in (one.start, one.end)]).reshape(-1, 2), axis=0
     )
@@ -176,13 +179,13 @@ def ends_on(
     return found
 
 
-def nearest_other(places: NDArray[np.float64], segment: Segment, point: Point) -> int:
-    """The number of the place nearest to the foot of a point on a segment."""
+def find_nearest_place(places: NDArray[np.float64], segment: Segment, point: Point) -> int:
+    """Return the number of the place nearest to the foot of a point on a segment."""
     foot = segment.at(segment.parameter(point))
     return int(np.hypot(*(places - foot).T).argmin())
 
 
-def owners_of(carrier: CutCarrier, position: float) -> tuple[int, ...]:
+def find_owners_at(carrier: CutCarrier, position: float) -> tuple[int, ...]:
     turns = (0.0, -2 * pi, 2 * pi) if isinstance(carrier.segment, Arc) else (0.0,)
     return tuple(
         owner
@@ -191,14 +194,14 @@ def owners_of(carrier: CutCarrier, position: float) -> tuple[int, ...]:
     )
 
 
-def bulge_between(carrier: CutCarrier, low: float, high: float) -> float:
-    """The bulge of a carrier's piece, run as its positions grow: counter-clockwise on a circle."""
+def compute_bulge_between(carrier: CutCarrier, low: float, high: float) -> float:
+    """Return the bulge of a carrier's piece, run as its positions grow: counter-clockwise on a circle."""
     return float(np.tan((high - low) / 4)) if isinstance(carrier.segment, Arc) else 0.0
 
 
-def with_gaps_closed(places: NDArray[np.float64], edges: list[Edge], tolerance: float) -> list[Edge]:
-    """The edges, with ends that lead nowhere moved onto the nearest node within a tolerance."""
-    degree = degrees_of(edges)
+def close_gaps(places: NDArray[np.float64], edges: list[Edge], tolerance: float) -> list[Edge]:
+    """Return the edges, with ends that lead nowhere moved onto the nearest node within a tolerance."""
+    degree = count_edges_at_nodes(edges)
     loose = [node for node, count in degree.items() if count == 1]
     nodes = np.array(sorted(degree), dtype=np.int64)
     moved: dict[int, int] = {}
@@ -216,13 +219,13 @@ def with_gaps_closed(places: NDArray[np.float64], edges: list[Edge], tolerance: 
         bulge = edge.bulge
         if (first, last) != (edge.first, edge.last):
             ends = [tuple(places[node].tolist()) for node in (edge.first, edge.last, first, last)]
-            bulge = rebulged(ends[0], ends[1], bulge, ends[2], ends[3])
+            bulge = compute_moved_bulge(ends[0], ends[1], bulge, ends[2], ends[3])
         out.append(Edge(first, last, bulge, edge.owners))
     return out
 
 
-def degrees_of(edges: Iterable[Edge]) -> dict[int, int]:
-    """How many edges end at each node."""
+def count_edges_at_nodes(edges: Iterable[Edge]) -> dict[int, int]:
+    """Return how many edges end at each node."""
     degree: dict[int, int] = defaultdict(int)
     for edge in edges:
         degree[edge.first] += 1
@@ -230,22 +233,22 @@ def degrees_of(edges: Iterable[Edge]) -> dict[int, int]:
     return degree
 
 
-def connected(count: int, edges: Sequence[Edge]) -> list[list[int]]:
-    """Numbers of the edges that hang together."""
+def group_connected_edges(count: int, edges: Sequence[Edge]) -> list[list[int]]:
+    """Return the numbers of the edges that hang together."""
     pairs = np.array([(edge.first, edge.last) for edge in edges], dtype=np.int64).reshape(-1, 2)
-    name = groups(count, pairs)
+    name = group_by_pairs(count, pairs)
     members: dict[int, list[int]] = defaultdict(list)
     for k, edge in enumerate(edges):
         members[int(name[edge.first])].append(k)
     return list(members.values())
 
 
-def faces_of(points: NDArray[np.float64], edges: Sequence[Edge]) -> list[list[int]]:
-    """The half-edges of each region's border, without dangles; also of the region outside, run clockwise."""
+def trace_region_borders(points: NDArray[np.float64], edges: Sequence[Edge]) -> list[list[int]]:
+    """Return the half-edges of each region's border, without dangles; also of the region outside, run clockwise."""
     kept = set(range(len(edges)))
     while True:
-        kept = without_loose_ends(edges, kept)
-        walks = walks_of(points, edges, kept)
+        kept = drop_loose_ends(edges, kept)
+        walks = trace_closed_walks(points, edges, kept)
         dangles = set()
         for walk in walks:
             seen = set(walk)
@@ -255,8 +258,8 @@ def faces_of(points: NDArray[np.float64], edges: Sequence[Edge]) -> list[list[in
         kept -= dangles
 
 
-def without_loose_ends(edges: Sequence[Edge], kept: set[int]) -> set[int]:
-    """Numbers of the edges that are left when those that lead nowhere are taken away, again and again."""
+def drop_loose_ends(edges: Sequence[Edge], kept: set[int]) -> set[int]:
+    """Return the numbers of the edges that are left when those that lead nowhere are taken away, again and again."""
     at: dict[int, set[int]] = defaultdict(set)
     for k in kept:
         at[edges[k].first].add(k)
@@ -274,16 +277,16 @@ def without_loose_ends(edges: Sequence[Edge], kept: set[int]) -> set[int]:
     return left
 
 
-def walks_of(points: NDArray[np.float64], edges: Sequence[Edge], kept: set[int]) -> list[list[int]]:
-    """Closed walks of half-edges, each followed by the one that turns farthest to the left at its end."""
+def trace_closed_walks(points: NDArray[np.float64], edges: Sequence[Edge], kept: set[int]) -> list[list[int]]:
+    """Return the closed walks of half-edges, each followed by the one that turns farthest to the left at its end."""
     leaving: dict[int, list[int]] = defaultdict(list)
     for k in sorted(kept):
         leaving[edges[k].first].append(2 * k)
         leaving[edges[k].last].append(2 * k + 1)
     after: dict[int, int] = {}
     for halves in leaving.values():
-        near = min(chord_of(points, edges[half // 2]) for half in halves) / 2
-        around = sorted(halves, key=lambda half: direction(points, edges, half, near))
+        near = min(measure_edge_chord(points, edges[half // 2]) for half in halves) / 2
+        around = sorted(halves, key=lambda half: compute_edge_direction(points, edges, half, near))
         for k, half in enumerate(around):
             # Counter-clockwise about the node, the walk that comes in along a half-edge leaves by the one
             # before it.
@@ -300,13 +303,16 @@ def walks_of(points: NDArray[np.float64], edges: Sequence[Edge], kept: set[int])
     return walks
 
 
-def chord_of(points: NDArray[np.float64], edge: Edge) -> float:
-    """The distance between the ends of an edge in mm."""
+def measure_edge_chord(points: NDArray[np.float64], edge: Edge) -> float:
+    """Return the distance between the ends of an edge in mm."""
     return float(np.hypot(*(points[edge.last] - points[edge.first])))
 
 
-def direction(points: NDArray[np.float64], edges: Sequence[Edge], half: int, near: float) -> float:
-    """The direction in radians in which a half-edge crosses the circle of some radius about its first node.
+def compute_edge_direction(
+    points: NDArray[np.float64], edges: Sequence[Edge], half: int, near: float
+) -> float:
+    """Return the direction in radians in which a half-edge crosses the circle of some radius about its first
+    node.
 
     Edges that are tangent at the node differ there by their curvature.
     """
@@ -325,7 +331,7 @@ def direction(points: NDArray[np.float64], edges: Sequence[Edge], half: int, nea
     return (heading + pi) % (2 * pi)
 
 
-def cluster(
+def make_cluster(
     points: NDArray[np.float64],
     edges: Sequence[Edge],
     walks: Sequence[Sequence[int]],
@@ -341,7 +347,7 @@ def cluster(
         if walk[0] // 2 not in own:
             continue
         used.update(half // 2 for half in walk)
-        loop = loop_of(place, edges, walk, labels)
+        loop = make_loop_from_walk(place, edges, walk, labels)
         if compute_signed_area(loop_segments(loop.vertices)) > 0:
             faces.append(loop)
             for half in walk:
@@ -367,7 +373,7 @@ def cluster(
     )
 
 
-def loop_of(
+def make_loop_from_walk(
     place: Sequence[Point], edges: Sequence[Edge], walk: Sequence[int], labels: Sequence[str]
 ) -> Loop:
     rows, names = [], []
@@ -380,7 +386,7 @@ def loop_of(
 
 
 def open_chains(place: Sequence[Point], edges: Sequence[Edge], labels: Sequence[str]) -> Iterable[Chain]:
-    """Edges that bound nothing as chains, joined where just two of them meet."""
+    """Yield the edges that bound nothing as chains, joined where just two of them meet."""
     at: dict[int, list[int]] = defaultdict(list)
     for k, edge in enumerate(edges):
         at[edge.first].append(k)

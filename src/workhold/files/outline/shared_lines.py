@@ -19,16 +19,23 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.files.budget import Budget, OverBudgetError
-from workhold.files.outline.chain import Chain, Drawing, at, counted, listed, without_segment
-from workhold.files.outline.diagnostics import surrounds
+from workhold.files.outline.chain import (
+    Chain,
+    Drawing,
+    format_count,
+    format_point,
+    list_first_items,
+    strip_segment_number,
+)
+from workhold.files.outline.diagnostics import surrounds_box
 from workhold.files.outline.joining import Joined, Junction, Loop, Stray, join
-from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, chosen_part, nest, overlap
-from workhold.files.outline.plane_map import Cluster, clusters_of
+from workhold.files.outline.nesting import DrawnPart, MeasuredLoop, boxes_meet, choose_part, nest_loops
+from workhold.files.outline.plane_map import Cluster, make_clusters
 from workhold.files.questions import PART_NUMBER
 from workhold.geometry.segment import Arc, Line, Segment, box_around
 from workhold.kernels.base.distance import is_inside
 
-__all__ = ["BadSpot", "Outlines", "chosen_outline", "outlines_of", "spot_remarks"]
+__all__ = ["BadSpot", "Outlines", "choose_outline", "make_outlines", "describe_bad_spots"]
 
 # mm. Cells no wider are graph paper or letters, and no parts.
 LEAST_CELL = 2.0
@@ -80,8 +87,8 @@ class Outlines:
     remarks: tuple[str, ...]
 
 
-def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget) -> Outlines:
-    """The outlines that chains make, in mm and without segments of zero length.
+def make_outlines(chains: Sequence[Chain], tolerance: float, drawing: Drawing, budget: Budget) -> Outlines:
+    """Return the outlines that chains make, in mm and without segments of zero length.
 
     Gaps up to the tolerance in mm are closed. The drawing is the one that they are of, for the layers and the
     looks of lines, and ``budget`` what reading the file may still take. Refuses a tolerance that cannot be
@@ -90,17 +97,17 @@ def outlines_of(chains: Sequence[Chain], tolerance: float, drawing: Drawing, bud
     joined = join(chains, tolerance, budget)
     remarks = list(joined.remarks)
     if joined.strays and not joined.junctions:
-        joined = with_doubled_lines_once(joined, tolerance, remarks)
+        joined = drop_doubled_lines(joined, tolerance, remarks)
     if not joined.junctions:
-        return Outlines(nest(joined.loops, budget), joined.strays, (), tuple(remarks))
-    return untangled(joined, tolerance, drawing, budget, remarks)
+        return Outlines(nest_loops(joined.loops, budget), joined.strays, (), tuple(remarks))
+    return untangle_outlines(joined, tolerance, drawing, budget, remarks)
 
 
-def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
+def drop_doubled_lines(joined: Joined, tolerance: float, remarks: list[str]) -> Joined:
     chains = [stray.chain for stray in joined.strays]
-    if not lie_on_each_other([segment for chain in chains for segment in chain.segments], tolerance):
+    if not run_along_each_other([segment for chain in chains for segment in chain.segments], tolerance):
         return joined
-    clusters = [one for one in clusters_or_none(chains, tolerance) if one.doubled]
+    clusters = [one for one in try_to_make_clusters(chains, tolerance) if one.doubled]
     if not clusters:
         return joined
     taken = {number for one in clusters for number in one.chains}
@@ -108,25 +115,25 @@ def with_doubled_lines_once(joined: Joined, tolerance: float, remarks: list[str]
     loops = list(joined.loops)
     for number, one in enumerate(clusters, start=1):
         loops += [evolve(face, nest=number if len(one.faces) > 1 else 0) for face in one.faces]
-        strays += [stray_of(chain) for chain in one.open]
-        remarks += shared_remarks(one)
-    places = listed([said for one in clusters for said in doubled_places(one)])
+        strays += [make_stray(chain) for chain in one.open]
+        remarks += describe_shared_lines(one)
+    places = list_first_items([said for one in clusters for said in find_doubled_places(one)])
     remarks.append(f"Read lines or arcs that lie on each other as one: {places}.")
     return evolve(joined, loops=tuple(loops), strays=tuple(strays))
 
 
-def untangled(
+def untangle_outlines(
     joined: Joined, tolerance: float, drawing: Drawing, budget: Budget, remarks: list[str]
 ) -> Outlines:
-    """The outlines of a drawing with points where one could go on in more than one way."""
-    junctions = JunctionsAt.of(joined.junctions, drawing.layers)
+    """Return the outlines of a drawing with points where one could go on in more than one way."""
+    junctions = JunctionsAt.from_junctions(joined.junctions, drawing.layers)
     tangled = list(joined.tangled)
     around = box_around([segment for chain in tangled for segment in chain.segments])
-    near = [loop for loop in joined.loops if overlap(box_of(loop), around)]
-    extra = [*(stray.chain for stray in joined.strays), *map(chain_of, near)]
+    near = [loop for loop in joined.loops if boxes_meet(compute_loop_box(loop), around)]
+    extra = [*(stray.chain for stray in joined.strays), *map(make_chain_from_loop, near)]
     clusters = [
         one
-        for one in clusters_or_none([*tangled, *extra], tolerance)
+        for one in try_to_make_clusters([*tangled, *extra], tolerance)
         if any(number < len(tangled) for number in one.chains)
     ]
     clusters.sort(key=lambda one: (one.box[0] - one.box[2]) * (one.box[3] - one.box[1]))
@@ -142,7 +149,7 @@ def untangled(
             if k >= len(tangled) + len(joined.strays)
         }
         others = [loop for loop in loops if id(loop) not in gone]
-        if is_nest(one, drawing) and not in_material(one, others):
+        if is_nest(one, drawing) and not lies_in_material(one, others):
             nests.append(one)
             taken = {k - len(tangled) for k in one.chains}
             strays = [
@@ -151,30 +158,34 @@ def untangled(
                 if not any(stray is joined.strays[k] for k in taken if 0 <= k < len(joined.strays))
             ]
             loops = others + [evolve(face, nest=len(nests)) for face in one.faces]
-            strays += [stray_of(chain) for chain in one.open]
+            strays += [make_stray(chain) for chain in one.open]
         else:
             labels = {label for k in one.chains if k < len(tangled) for label in tangled[k].labels}
-            spots += junctions.spot(labels, one.box, bool(one.faces))
+            spots += junctions.find_bad_spots(labels, one.box, bool(one.faces))
     for k, chain in enumerate(tangled):
         if k not in known:
             # There is too much of it to look at.
-            spots += junctions.spot(chain.labels, box_around(chain.segments), True)
-    parts = nest(loops, budget)
+            spots += junctions.find_bad_spots(chain.labels, box_around(chain.segments), True)
+    parts = nest_loops(loops, budget)
     frames = {number for number in range(1, len(nests) + 1) if is_frame(number, parts)}
     if frames:
-        parts = nest([loop for loop in loops if loop.nest not in frames], budget)
+        parts = nest_loops([loop for loop in loops if loop.nest not in frames], budget)
     for number, one in enumerate(nests, start=1):
-        names = listed(list(dict.fromkeys(without_segment(label) for label, _, _ in one.shared)))
-        remarks += (
-            [f"Left out a frame around the parts ({names})."] if number in frames else shared_remarks(one)
+        names = list_first_items(
+            list(dict.fromkeys(strip_segment_number(label) for label, _, _ in one.shared))
         )
-    return Outlines(parts, tuple(strays), tuple(spots_once(spots)), tuple(remarks))
+        remarks += (
+            [f"Left out a frame around the parts ({names})."]
+            if number in frames
+            else describe_shared_lines(one)
+        )
+    return Outlines(parts, tuple(strays), tuple(join_bad_spots(spots)), tuple(remarks))
 
 
-def clusters_or_none(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
-    """What hangs together; nothing where there is too much to look at."""
+def try_to_make_clusters(chains: Sequence[Chain], tolerance: float) -> list[Cluster]:
+    """Return what hangs together; nothing where there is too much to look at."""
     try:
-        return clusters_of(chains, tolerance)
+        return make_clusters(chains, tolerance)
     except OverBudgetError:
         raise
     except InputError:
@@ -182,7 +193,8 @@ def clusters_or_none(chains: Sequence[Chain], tolerance: float) -> list[Cluster]
 
 
 def is_nest(one: Cluster, drawing: Drawing) -> bool:
-    """Whether lines that hang together are outlines that share some: on one layer, and larger than letters.
+    """Return whether lines that hang together are outlines that share some: on one layer, and larger than
+    letters.
 
     A shared line that looks like no other line of the outlines is a bend or a marking rather than a cut.
     """
@@ -194,25 +206,25 @@ def is_nest(one: Cluster, drawing: Drawing) -> bool:
     looks = {drawing.looks.get(label) for label in labels - shared}
     if looks and any(drawing.looks.get(label) not in looks for label in shared):
         return False
-    size = max(max(x1 - x0, y1 - y0) for x0, y0, x1, y1 in map(box_of, one.faces))
+    size = max(max(x1 - x0, y1 - y0) for x0, y0, x1, y1 in map(compute_loop_box, one.faces))
     return len(used) == 1 and size > LEAST_CELL
 
 
-def in_material(one: Cluster, loops: Sequence[Loop]) -> bool:
-    """Whether lines that hang together lie inside a part, where they are holes."""
+def lies_in_material(one: Cluster, loops: Sequence[Loop]) -> bool:
+    """Return whether lines that hang together lie inside a part, where they are holes."""
     x, y, _ = one.faces[0].vertices[0]
-    around = [loop for loop in loops if surrounds(box_of(loop), one.box)]
-    return sum(is_inside(float(x), float(y), MeasuredLoop.of(loop).rows) for loop in around) % 2 == 1
+    around = [loop for loop in loops if surrounds_box(compute_loop_box(loop), one.box)]
+    return sum(is_inside(float(x), float(y), MeasuredLoop.from_loop(loop).rows) for loop in around) % 2 == 1
 
 
 def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
-    """Whether whole parts lie in a hole of an outline of a nest."""
+    """Return whether whole parts lie in a hole of an outline of a nest."""
     for part in parts:
         if part.loops[0].nest != number:
             continue
-        for hole in map(MeasuredLoop.of, part.loops[1:]):
+        for hole in map(MeasuredLoop.from_loop, part.loops[1:]):
             for other in parts:
-                if surrounds(hole.box, other.bounds) and other.loops[0].nest != number:
+                if surrounds_box(hole.box, other.bounds) and other.loops[0].nest != number:
                     x, y, _ = other.loops[0].vertices[0]
                     if is_inside(float(x), float(y), hole.rows):
                         return True
@@ -235,8 +247,8 @@ class JunctionsAt:
     layers: tuple[str, ...]
 
     @classmethod
-    def of(cls, junctions: Sequence[Junction], layers: Mapping[str, str]) -> JunctionsAt:
-        """Those of a drawing whose segments are on some layers."""
+    def from_junctions(cls, junctions: Sequence[Junction], layers: Mapping[str, str]) -> JunctionsAt:
+        """Collect the junctions of a drawing whose segments are on some layers."""
         first = dict[str, int]()
         alone = list[str]()
         for number, junction in enumerate(junctions):
@@ -246,7 +258,7 @@ class JunctionsAt:
                 first.setdefault(label, number)
         return cls(tuple(junctions), first, tuple(alone))
 
-    def spot(
+    def find_bad_spots(
         self, labels: Iterable[str], box: tuple[float, float, float, float], bounds_something: bool
     ) -> list[BadSpot]:
         number = min((self.first[label] for label in labels if label in self.first), default=None)
@@ -255,8 +267,8 @@ class JunctionsAt:
         return [BadSpot(self.junctions[number], box, bounds_something, self.layers[number])]
 
 
-def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
-    """Bad spots of one junction as one, in the order of their junctions."""
+def join_bad_spots(spots: Sequence[BadSpot]) -> list[BadSpot]:
+    """Return the bad spots of one junction as one, in the order of their junctions."""
     found: dict[int, BadSpot] = {}
     for spot in spots:
         known = found.setdefault(id(spot.junction), spot)
@@ -265,15 +277,15 @@ def spots_once(spots: Sequence[BadSpot]) -> list[BadSpot]:
     return list(found.values())
 
 
-def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
-    """The part of a number, or the largest that can be told.
+def choose_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
+    """Return the part of a number, or the largest that can be told.
 
     Refuses where there is none, where a bad spot lies in it, and where something larger that cannot be told
     may be meant.
     """
     parts, spots = outlines.parts, outlines.spots
     if number is not None or not spots:
-        part = chosen_part(parts, number)
+        part = choose_part(parts, number)
         for spot in spots:
             if is_spoiled(part, spot):
                 raise spot.junction.refusal
@@ -285,7 +297,7 @@ def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
     for spot in spots:
         larger = [spot.area, *(part.area for part in parts if is_spoiled(part, spot))]
         around = [spot.box, *(part.bounds for part in parts if is_spoiled(part, spot))]
-        if max(larger) > MOST_LARGER * best.area or any(surrounds(box, best.bounds) for box in around):
+        if max(larger) > MOST_LARGER * best.area or any(surrounds_box(box, best.bounds) for box in around):
             said = str(spot.junction.refusal).rstrip(".")
             raise InputError(
                 f"{said}. To read what lies beside it, give {PART_NUMBER} {best.number}: {best}."
@@ -294,65 +306,67 @@ def chosen_outline(outlines: Outlines, number: int | str | None) -> DrawnPart:
 
 
 def is_spoiled(part: DrawnPart, spot: BadSpot) -> bool:
-    """Whether a bad spot lies in the material of a part, where it may be the border of a hole."""
-    if not spot.bounds_something or not overlap(part.bounds, spot.box):
+    """Return whether a bad spot lies in the material of a part, where it may be the border of a hole."""
+    if not spot.bounds_something or not boxes_meet(part.bounds, spot.box):
         return False
     x, y = spot.junction.point
-    outer, *holes = (MeasuredLoop.of(loop) for loop in part.loops)
+    outer, *holes = (MeasuredLoop.from_loop(loop) for loop in part.loops)
     return bool(is_inside(x, y, outer.rows)) and not any(is_inside(x, y, hole.rows) for hole in holes)
 
 
-def spot_remarks(outlines: Outlines) -> list[str]:
-    """What to say of the bad spots of a drawing of which a part is read all the same."""
+def describe_bad_spots(outlines: Outlines) -> list[str]:
+    """Return what to say of the bad spots of a drawing of which a part is read all the same."""
     if not outlines.spots:
         return []
-    places = listed([str(spot) for spot in outlines.spots])
+    places = list_first_items([str(spot) for spot in outlines.spots])
     spoiled = [
         str(part.number) for part in outlines.parts if any(is_spoiled(part, spot) for spot in outlines.spots)
     ]
     cannot = f"; part {', '.join(spoiled[:10])} around cannot be read" if spoiled else ""
-    count = counted(len(outlines.spots), "place", "places")
+    count = format_count(len(outlines.spots), "place", "places")
     return [f"Left out {count} where an outline could go on in more than one way: {places}{cannot}."]
 
 
-def shared_remarks(one: Cluster) -> list[str]:
+def describe_shared_lines(one: Cluster) -> list[str]:
     if len(one.faces) < 2:
         return []
-    places = listed([f"{label} from {at(start)} to {at(end)}" for label, start, end in one.shared])
+    places = list_first_items(
+        [f"{label} from {format_point(start)} to {format_point(end)}" for label, start, end in one.shared]
+    )
     return [
         f"Read {len(one.faces)} outlines that share lines as separate parts: {places}; where such a line is a "
         "bend or a marking and no cut, remove it, or put it on a layer that is not chosen."
     ]
 
 
-def doubled_places(one: Cluster) -> list[str]:
+def find_doubled_places(one: Cluster) -> list[str]:
     return [
-        f"{without_segment(label)} and {without_segment(other)} from {at(start)} to {at(end)}"
+        f"{strip_segment_number(label)} and {strip_segment_number(other)} from {format_point(start)} to {format_point(end)}"
         for label, other, start, end in one.doubled
     ]
 
 
-def stray_of(chain: Chain) -> Stray:
-    return Stray(chain, without_segment(chain.labels[0]), without_segment(chain.labels[-1]))
+def make_stray(chain: Chain) -> Stray:
+    return Stray(chain, strip_segment_number(chain.labels[0]), strip_segment_number(chain.labels[-1]))
 
 
-def chain_of(loop: Loop) -> Chain:
+def make_chain_from_loop(loop: Loop) -> Chain:
     points = [(float(x), float(y)) for x, y in loop.vertices[:, :2]]
     return Chain((*points, points[0]), tuple(loop.vertices[:, 2].tolist()), loop.labels)
 
 
-def box_of(loop: Loop) -> tuple[float, float, float, float]:
-    return box_around(chain_of(loop).segments)
+def compute_loop_box(loop: Loop) -> tuple[float, float, float, float]:
+    return box_around(make_chain_from_loop(loop).segments)
 
 
 # Radians and mm: lines and circles nearer than this are looked at as one.
 NEAR_ANGLE, NEAR_PLACE = 1e-6, 1e-5
 
 
-def lie_on_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
-    """Whether two of some lines and arcs run along each other for more than a tolerance, in mm."""
+def run_along_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
+    """Return whether two of some lines and arcs run along each other for more than a tolerance, in mm."""
     lines = [one for one in segments if isinstance(one, Line)]
-    if len(lines) > 1 and lines_overlap(lines, tolerance):
+    if len(lines) > 1 and lines_run_along_each_other(lines, tolerance):
         return True
     arcs: dict[tuple[float, ...], list[tuple[float, float]]] = {}
     for one in segments:
@@ -363,36 +377,38 @@ def lie_on_each_other(segments: Sequence[Segment], tolerance: float) -> bool:
             slack = tolerance / one.radius
             for turn in (-2 * pi, 0.0):
                 spans.append((first + turn + slack, first + turn + 2 * one.half_sweep - slack))
-    return any(spans_overlap(spans) for spans in arcs.values())
+    return any(any_spans_overlap(spans) for spans in arcs.values())
 
 
-def lines_overlap(lines: Sequence[Line], tolerance: float) -> bool:
+def lines_run_along_each_other(lines: Sequence[Line], tolerance: float) -> bool:
     rows = np.array([(*one.start, *one.end) for one in lines])
     rows = rows - np.tile(rows.reshape(-1, 2).mean(axis=0), 2)
     angle = np.arctan2(rows[:, 3] - rows[:, 1], rows[:, 2] - rows[:, 0]) % pi
     angle[angle > pi - NEAR_ANGLE] -= pi
-    for some in runs_near(angle, np.arange(len(rows)), NEAR_ANGLE):
+    for some in group_near_values(angle, np.arange(len(rows)), NEAR_ANGLE):
         turned = float(angle[some[0]])
         c, s = np.cos(turned), np.sin(turned)
         off = c * rows[some, 1] - s * rows[some, 0]
-        for same in runs_near(off, some, NEAR_PLACE):
+        for same in group_near_values(off, some, NEAR_PLACE):
             along = np.sort(rows[same][:, [0, 2]] * c + rows[same][:, [1, 3]] * s, axis=1)
-            if spans_overlap([(low + tolerance / 2, high - tolerance / 2) for low, high in along.tolist()]):
+            if any_spans_overlap(
+                [(low + tolerance / 2, high - tolerance / 2) for low, high in along.tolist()]
+            ):
                 return True
     return False
 
 
-def runs_near(
+def group_near_values(
     values: NDArray[np.float64], numbers: NDArray[np.int64], slack: float
 ) -> list[NDArray[np.int64]]:
-    """Numbers in groups of two and more whose values follow each other within a slack."""
+    """Return the numbers in groups of two and more whose values follow each other within a slack."""
     order = np.argsort(values, kind="stable")
     breaks = np.flatnonzero(np.diff(values[order]) > slack) + 1
     return [numbers[part] for part in np.split(order, breaks) if len(part) > 1]
 
 
-def spans_overlap(spans: Sequence[tuple[float, float]]) -> bool:
-    """Whether one of some spans begins before one that began earlier has ended."""
+def any_spans_overlap(spans: Sequence[tuple[float, float]]) -> bool:
+    """Return whether one of some spans begins before one that began earlier has ended."""
     reached = -np.inf
     for low, high in sorted(spans):
         if high <= low:

@@ -23,24 +23,31 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain, Drawing
-from workhold.files.outline.curves import with_chords_merged
+from workhold.files.outline.curves import merge_short_chords
 from workhold.files.outline.joining import Loop
-from workhold.files.outline.nesting import as_one, chosen_part
-from workhold.files.part.loaded import Loaded, built, refuse_large
-from workhold.files.questions import DRAWING_UNIT, FIT, by_height, refuse_axis, refuse_fit, refuse_layers
-from workhold.files.text import json_value
+from workhold.files.outline.nesting import choose_part, join_loops_as_one_part
+from workhold.files.part.loaded import Loaded, build_workpiece, refuse_large
+from workhold.files.questions import (
+    DRAWING_UNIT,
+    FIT,
+    is_read_by_height,
+    refuse_axis,
+    refuse_fit,
+    refuse_layers,
+)
+from workhold.files.text import parse_json
 from workhold.model.requirements import number_pairs
 from workhold.model.solid import SolidOutline
-from workhold.units import unit_named
+from workhold.units import find_unit
 
 if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
 
-__all__ = ["ObjectPart", "drawing_of_object", "read_json"]
+__all__ = ["ObjectPart", "read_object", "read_json"]
 
 
 def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool) -> Loaded:
-    """Reads a workpiece, or the workpiece of a result file.
+    """Read a workpiece, or the workpiece of a result file.
 
     For the options see :func:`workhold.files.part.load.read_workpiece`. The shape of a file of workhold's
     ``own`` needs no check. Refuses choices that do not apply to JSON.
@@ -50,14 +57,14 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
     if options["unit"] is not None:
         raise InputError(f'the JSON file gives its own "units": leave {DRAWING_UNIT} out.')
     try:
-        data = json_value(content.decode("utf-8-sig"))
+        data = parse_json(content.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise InputError(
             f"the file is not UTF-8 text (byte {error.start}): save it as UTF-8 JSON."
         ) from error
     solid: SolidOutline | None = None
     if isinstance(data, dict) and str(data.get("format", "")).startswith("workhold-result"):
-        solid = solid_of(data)
+        solid = read_solid_outline(data)
         data = data.get("workpiece")
     if own or solid is not None:
         refuse_fit(fit)
@@ -66,36 +73,36 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
             'The file holds no workpiece: it must be {"name": ..., "units": "mm", "loops": [...]}.'
         )
     if not own:
-        from workhold.files.input_forms import checked_workpiece
+        from workhold.files.input_forms import check_workpiece_entries
 
-        data = checked_workpiece(data)
+        data = check_workpiece_entries(data)
     units: str = data["units"]
     if units not in ("mm", "inch"):
         raise InputError(f'The units "{units[:40]}" are not known: write "mm" or "inch".')
-    scale = unit_named(units).millimetres
+    scale = find_unit(units).millimetres
     refuse_large(sum(map(len, data["loops"])))
     loops = [Loop(np.array(loop).reshape(-1, 3) * (scale, scale, 1.0), ()) for loop in data["loops"]]
     departure = scale * (data.get("departure") or 0.0)
     name = data.get("name") or path.stem
-    workpiece = built(name, loops, False, departure, solid)
+    workpiece = build_workpiece(name, loops, False, departure, solid)
     of_chords = list[str]()
     if solid is None and not own:
         # What is checked has no arcs of absurd sizes, which the chords would be compared with.
         budget = Budget(LIMITS["json"], len(content))
         drawn = [Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]
-        merged, away, of_chords = with_chords_merged(drawn, {}, fit, budget)
+        merged, away, of_chords = merge_short_chords(drawn, {}, fit, budget)
         if fit is not None:
-            workpiece = built(name, merged, False, departure + away, None)
+            workpiece = build_workpiece(name, merged, False, departure + away, None)
         else:
             # Without a fit a file of numbers is read as it is.
             of_chords = [said for said in of_chords if FIT in said]
-    part = (as_one([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
-    chosen_part(part, options["part_number"])
+    part = (join_loops_as_one_part([Loop(loop, ("",) * len(loop)) for loop in workpiece.loops]),)
+    choose_part(part, options["part_number"])
     return Loaded(workpiece, (*workpiece.remarks, *of_chords), part)
 
 
-def solid_of(content: Mapping[str, Any]) -> SolidOutline | None:
-    """The solid of a result file's workpiece, None where it has none; refuses one that is not complete."""
+def read_solid_outline(content: Mapping[str, Any]) -> SolidOutline | None:
+    """Return the solid of a result file's workpiece, None where it has none; refuse one that is not complete."""
     workpiece, solid = content.get("workpiece"), content.get("solid")
     if solid is None or not isinstance(workpiece, dict):
         return None
@@ -137,7 +144,7 @@ class ObjectPart:
     layered: bool = False
 
 
-def drawing_of_object(
+def read_object(
     part: Any,
     *,
     unit: str | None,
@@ -147,7 +154,7 @@ def drawing_of_object(
     fit: float | None,
     **view: Any,
 ) -> ObjectPart:
-    """What an object of another library holds.
+    """Return what an object of another library holds.
 
     The arguments are those of :func:`workhold.load`; ``view`` is how a solid is looked at. A geometry of
     shapely has no unit and is in mm unless one is given. Refuses choices that do not apply to the object.
@@ -156,34 +163,36 @@ def drawing_of_object(
     if is_geometry or isinstance(part, np.ndarray | list | tuple):
         refuse_axis(view)
         refuse_layers(layers)
-        scale = unit_named(unit or usual_unit or "mm").millimetres
-        chains = geometry_chains(part, scale) if is_geometry else (corner_chain(part, scale),)
+        scale = find_unit(unit or usual_unit or "mm").millimetres
+        chains = (
+            make_chains_from_shapely(part, scale) if is_geometry else (make_chain_from_array(part, scale),)
+        )
         return ObjectPart(Drawing(tuple(chains)), "polygon", part_number)
     if hasattr(part, "modelspace") and hasattr(part, "header"):
-        from workhold.files.dxf.reader import code_said, read_document
+        from workhold.files.dxf.reader import normalize_unit_code, read_document
 
         refuse_axis(view)
-        code = code_said(part.header.get("$INSUNITS", 0))
+        code = normalize_unit_code(part.header.get("$INSUNITS", 0))
         drawing = read_document(part, code, unit=unit, usual_unit=usual_unit, layers=layers, fit=fit)
         return ObjectPart(
             drawing, Path(getattr(part, "filename", None) or "drawing").stem, part_number, layered=True
         )
-    shapes = list(wrapped_shapes(part))
+    shapes = list(list_wrapped_shapes(part))
     if not shapes:
         raise InputError(f"a part cannot be read from it: {WANTED}.")
     refuse_layers(layers)
     if unit is not None:
         raise InputError(f"shapes of Open CASCADE are in mm: leave {DRAWING_UNIT} out.")
     name = str(getattr(part, "label", "") or "shape")
-    from workhold.files.step.by_height import HeightView, shapes_by_height, shapes_usual
+    from workhold.files.step.by_height import HeightView, draw_shapes_at_usual_height, draw_shapes_by_height
 
     keys = ("axis", "peg_height", "head_room", "least_band", "heights", "peg_diameter")
     given = {key: view[key] for key in keys if view.get(key) is not None}
     height_view = HeightView(**given, part_number=part_number)
-    if by_height(view, fit):
-        return ObjectPart(shapes_by_height(shapes, height_view), name, None)
+    if is_read_by_height(view, fit):
+        return ObjectPart(draw_shapes_by_height(shapes, height_view), name, None)
     if view["section"] is None and fit is None:
-        found = shapes_usual(shapes, height_view)
+        found = draw_shapes_at_usual_height(shapes, height_view)
         if found is not None:
             return ObjectPart(found, name, None)
     from workhold.files.step.reader import read_shapes
@@ -194,46 +203,48 @@ def drawing_of_object(
     return ObjectPart(drawing, name, rest)
 
 
-def geometry_chains(geometry: Any, scale: float) -> Iterator[Chain]:
-    """The rings and lines of a geometry of shapely as chains in mm; refuses points, which have no outline."""
+def make_chains_from_shapely(geometry: Any, scale: float) -> Iterator[Chain]:
+    """Yield the rings and lines of a geometry of shapely as chains in mm; refuse points, which have no outline."""
     kind = geometry.geom_type
     if hasattr(geometry, "geoms"):
         for one in geometry.geoms:
-            yield from geometry_chains(one, scale)
+            yield from make_chains_from_shapely(one, scale)
     elif kind == "Polygon":
         for ring in (geometry.exterior, *geometry.interiors):
-            yield from geometry_chains(ring, scale)
+            yield from make_chains_from_shapely(ring, scale)
     elif kind in ("LinearRing", "LineString"):
         corners = [(scale * float(x), scale * float(y)) for x, y, *_ in geometry.coords]
         if len(corners) > 1:
-            yield chain_of(corners, kind)
+            yield make_chain_from_corners(corners, kind)
     else:
         raise InputError(f"a {kind} has no outline: give a polygon.")
 
 
-def chain_of(corners: Sequence[tuple[float, float]], kind: str) -> Chain:
+def make_chain_from_corners(corners: Sequence[tuple[float, float]], kind: str) -> Chain:
     labels = tuple(f"corner {k} of a {kind}" for k in range(len(corners) - 1))
     return Chain(tuple(corners), (0.0,) * (len(corners) - 1), labels)
 
 
-def corner_chain(points: Any, scale: float) -> Chain:
-    """The closed chain in mm of an array of corners; refuses arrays that are none."""
+def make_chain_from_array(points: Any, scale: float) -> Chain:
+    """Return the closed chain in mm of an array of corners; refuse arrays that are none."""
     corners = [(scale * x, scale * y) for x, y in number_pairs(points, "a corner of an outline", CORNERS)]
     if len(corners) < 3:
         raise InputError(f"an outline of {len(corners)} corners is not possible: {CORNERS}.")
-    return chain_of([*corners, *corners[:1]] if corners[:1] != corners[-1:] else corners, "polygon")
+    return make_chain_from_corners(
+        [*corners, *corners[:1]] if corners[:1] != corners[-1:] else corners, "polygon"
+    )
 
 
-def wrapped_shapes(part: Any) -> Iterator[Any]:
-    """The shapes of Open CASCADE that an object wraps, or that what it holds wraps; none of other objects."""
+def list_wrapped_shapes(part: Any) -> Iterator[Any]:
+    """Yield the shapes of Open CASCADE that an object wraps, or that what it holds wraps; none of other objects."""
     if type(part).__module__.partition(".")[0] == "OCP":
         yield part
     elif getattr(part, "wrapped", None) is not None:
-        yield from wrapped_shapes(part.wrapped)
+        yield from list_wrapped_shapes(part.wrapped)
     elif callable(getattr(part, "vals", None)) and not hasattr(part, "_faces"):
         for one in part.vals():
-            yield from wrapped_shapes(one)
+            yield from list_wrapped_shapes(one)
     else:
         held = next((getattr(part, name) for name in HELD if getattr(part, name, None) is not None), None)
         if held is not None and held is not part:
-            yield from wrapped_shapes(held)
+            yield from list_wrapped_shapes(held)

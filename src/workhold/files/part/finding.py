@@ -18,7 +18,14 @@ from workhold.errors import InputError
 from workhold.files.budget import PART_BYTES
 from workhold.files.text import read_at_most
 
-__all__ = ["BuiltinPart", "builtin_parts", "builtin_path", "found", "kind_of", "read_bytes"]
+__all__ = [
+    "BuiltinPart",
+    "list_builtin_parts",
+    "find_builtin_path",
+    "find_part_file",
+    "detect_file_kind",
+    "read_bytes",
+]
 
 
 @frozen
@@ -46,36 +53,36 @@ PARTS = (
 )
 
 
-def builtin_parts() -> tuple[BuiltinPart, ...]:
-    """Names and one-line descriptions of the built-in parts.
+def list_builtin_parts() -> tuple[BuiltinPart, ...]:
+    """Return the names and one-line descriptions of the built-in parts.
 
     They are models of the paper's parts, whose dimensions were never published.
 
     Examples
     --------
-    >>> [part.name for part in builtin_parts()][-1]
+    >>> [part.name for part in list_builtin_parts()][-1]
     'widget'
     """
     return PARTS
 
 
-def builtin_path(name: str) -> Path | None:
-    """File of a built-in part, named in any mixture of capitals; None when there is none."""
+def find_builtin_path(name: str) -> Path | None:
+    """Return the file of a built-in part, named in any mixture of capitals; None when there is none."""
     for part in PARTS:
         if part.name.lower() == name.strip().lower():
             return Path(str(files("workhold") / "data" / "parts" / f"{part.name}.json"))
     return None
 
 
-def found(part: str | PathLike[str]) -> Path:
-    """The file of a part given by path or built-in name; the refusal lists built-in names that are close."""
+def find_part_file(part: str | PathLike[str]) -> Path:
+    """Return the file of a part given by path or built-in name; the refusal lists built-in names that are close."""
     path = Path(part)
     try:
         if path.exists() or path.is_symlink():
             return path
     except (OSError, ValueError):
         pass
-    builtin = builtin_path(str(part))
+    builtin = find_builtin_path(str(part))
     if builtin is not None:
         return builtin
     known = {one.name.lower(): one.name for one in PARTS}
@@ -87,7 +94,7 @@ def found(part: str | PathLike[str]) -> Path:
 
 
 def read_bytes(path: Path) -> bytes:
-    """The file's bytes.
+    """Return the file's bytes.
 
     Raises
     ------
@@ -116,8 +123,8 @@ def read_bytes(path: Path) -> bytes:
     return content
 
 
-def kind_of(path: Path, content: bytes) -> str:
-    """ "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes."""
+def detect_file_kind(path: Path, content: bytes) -> str:
+    """Return "json", "dxf", "svg" or "step", by the file's ending or else by its first bytes."""
     ending = path.suffix.lower().lstrip(".")
     if ending in ("json", "dxf", "svg", "step"):
         return ending

@@ -14,32 +14,38 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Drawing
-from workhold.files.outline.curves import checked_fit
-from workhold.files.part.data import drawing_of_object, read_json
-from workhold.files.part.finding import builtin_parts, builtin_path, found, kind_of, read_bytes
+from workhold.files.outline.curves import check_fit
+from workhold.files.part.data import read_json, read_object
+from workhold.files.part.finding import (
+    detect_file_kind,
+    find_builtin_path,
+    find_part_file,
+    list_builtin_parts,
+    read_bytes,
+)
 from workhold.files.part.loaded import (
     Loaded,
     from_drawing,
     from_heights,
-    with_solid_named,
+    name_part_after_solid,
 )
 from workhold.files.questions import (
     DRAWING_UNIT,
     PEG_HEIGHT,
     UnitAskedError,
-    by_height,
-    layers_given,
+    check_layer_names,
+    is_read_by_height,
+    name_questions,
     number_or_name,
     refuse_axis,
     refuse_layers,
-    worded,
 )
 from workhold.fixels.toolkit import Toolkit
-from workhold.limits import real
+from workhold.limits import convert_real
 from workhold.model.workpiece import Workpiece
-from workhold.units import drawing_unit
+from workhold.units import find_drawing_unit
 
-__all__ = ["Loaded", "builtin_parts", "load", "read_workpiece", "refuse_unsure_numbers"]
+__all__ = ["Loaded", "list_builtin_parts", "load", "read_workpiece", "refuse_unsure_numbers"]
 
 
 def load(
@@ -59,7 +65,7 @@ def load(
     heights: Mapping[str, Sequence[float]] | None = None,
     toolkit: Toolkit | None = None,
 ) -> Workpiece:
-    """Loads a part from a file, by the name of a built-in model, or from an object of another library.
+    """Load a part from a file, by the name of a built-in model, or from an object of another library.
 
     Parameters
     ----------
@@ -143,7 +149,7 @@ def read_workpiece(
     peg_diameter: float | None = None,
     called: Mapping[str, str] | None = None,
 ) -> Loaded:
-    """Loads a part as :func:`load` does, with remarks and the list of all parts in the file.
+    """Load a part as :func:`load` does, with remarks and the list of all parts in the file.
 
     Parameters
     ----------
@@ -158,22 +164,22 @@ def read_workpiece(
     InputError
         For a part that cannot be found, read or used, naming the place.
     """
-    if not (isfinite(real(join_tolerance, "the join tolerance")) and join_tolerance >= 0):
+    if not (isfinite(convert_real(join_tolerance, "the join tolerance")) and join_tolerance >= 0):
         raise InputError(
             f"The join tolerance {join_tolerance} is not usable: give a length in mm, 0 or more."
         )
     lengths = {"fit": fit, "section": section, "peg height": peg_height, "head room": head_room}
     for words, length in (lengths | {"least band": least_band}).items():
         if length is not None:
-            real(length, words)
-    checked_fit(fit)
+            convert_real(length, words)
+    check_fit(fit)
     for name in (unit, usual_unit):
         if name is not None:
-            drawing_unit(name)
+            find_drawing_unit(name)
     options: dict[str, Any] = {
         "unit": unit,
         "usual_unit": usual_unit,
-        "layers": layers_given(layers),
+        "layers": check_layer_names(layers),
         "part_number": number_or_name(part_number),
         "fit": fit,
         "axis": axis,
@@ -184,7 +190,7 @@ def read_workpiece(
         "heights": dict(heights or {}),
         "peg_diameter": peg_diameter,
     }
-    path = found(part) if isinstance(part, str | PathLike) else None
+    path = find_part_file(part) if isinstance(part, str | PathLike) else None
     try:
         # Numbers that overflow are refused where they are looked at; NumPy would warn of them before.
         with np.errstate(all="ignore"):
@@ -195,14 +201,14 @@ def read_workpiece(
     except InputError as error:
         kind_of_error = UnitAskedError if isinstance(error, UnitAskedError) else InputError
         place = f"this {type(part).__name__}" if path is None else path.name
-        raise kind_of_error(f"{place}: {worded(str(error), called)}") from error
-    return evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
+        raise kind_of_error(f"{place}: {name_questions(str(error), called)}") from error
+    return evolve(loaded, remarks=tuple(name_questions(remark, called) for remark in loaded.remarks))
 
 
 def refuse_unsure_numbers(
     loaded: Loaded, faces: Sequence[int], called: Mapping[str, str] | None = None
 ) -> None:
-    """Refuses faces named by number where the numbers depend on a height of the pegs that nobody has said.
+    """Refuse faces named by number where the numbers depend on a height of the pegs that nobody has said.
 
     Parameters
     ----------
@@ -223,12 +229,12 @@ def refuse_unsure_numbers(
         f"{PEG_HEIGHT} {usual.height:.6g}mm, as tall as the part, and the numbers that the part "
         "has with it."
     )
-    raise InputError(worded(sentence, called))
+    raise InputError(name_questions(sentence, called))
 
 
 def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """A workpiece from an object of another library; refuses other objects and choices that do not apply."""
-    held = drawing_of_object(part, **options)
+    """Return a workpiece from an object of another library; refuse other objects and choices that do not apply."""
+    held = read_object(part, **options)
     if not isinstance(held.drawing, Drawing):
         return from_heights(held.name, held.drawing)
     return from_drawing(
@@ -237,15 +243,15 @@ def from_object(part: Any, options: Mapping[str, Any], join_tolerance: float) ->
 
 
 def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> Loaded:
-    """A workpiece from a file; refuses one that cannot be used, and choices that do not apply to it."""
+    """Return a workpiece from a file; refuse one that cannot be used, and choices that do not apply to it."""
     content = read_bytes(path)
-    kind = kind_of(path, content)
+    kind = detect_file_kind(path, content)
     part_number, layers, fit = options["part_number"], options["layers"], options["fit"]
     if kind == "step":
         return from_step(path, content, options)
     refuse_axis(options)
     if kind == "json":
-        return read_json(path, content, options, own=path == builtin_path(path.stem))
+        return read_json(path, content, options, own=path == find_builtin_path(path.stem))
     units = {"unit": options["unit"], "usual_unit": options["usual_unit"]}
     budget = Budget(LIMITS[kind], len(content))
     if kind == "dxf":
@@ -268,13 +274,13 @@ def from_file(path: Path, options: Mapping[str, Any], join_tolerance: float) -> 
 
 
 def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
-    """A workpiece from the bytes of a STEP file; refuses wrong content, and choices that do not apply to
-    STEP.
+    """Return a workpiece from the bytes of a STEP file; refuse wrong content, and choices that do not apply
+    to STEP.
     """
     refuse_layers(options["layers"])
     if options["unit"] is not None:
         raise InputError(f"the STEP file gives its own unit: leave {DRAWING_UNIT} out.")
-    asked = by_height(options, options["fit"])
+    asked = is_read_by_height(options, options["fit"])
     if asked or (options["section"] is None and options["fit"] is None):
         from workhold.files.step.by_height import HeightView, read_by_height_apart
 
@@ -293,7 +299,7 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
             loaded = from_drawing(path, read, None, 0.0, None)
         else:
             loaded = from_heights(path.stem, read)
-        return with_solid_named(loaded, path.stem, options["part_number"])
+        return name_part_after_solid(loaded, path.stem, options["part_number"])
     from workhold.files.step.reader import read_step_apart
 
     drawing = read_step_apart(
@@ -304,4 +310,4 @@ def from_step(path: Path, content: bytes, options: Mapping[str, Any]) -> Loaded:
         fit=options["fit"],
     )
     loaded = from_drawing(path, drawing, None, 0.0, options["fit"])
-    return with_solid_named(loaded, path.stem, options["part_number"])
+    return name_part_after_solid(loaded, path.stem, options["part_number"])

@@ -15,23 +15,23 @@ from attrs import evolve, frozen
 
 from workhold.errors import InputError
 from workhold.files.budget import UNLIMITED, Budget
-from workhold.files.outline.chain import Drawing, cleaned
+from workhold.files.outline.chain import Drawing, drop_zero_lengths
 from workhold.files.outline.curves import (
-    curve_remarks,
-    departure_remark,
+    describe_curve_fit,
+    describe_departure,
+    merge_short_chords,
     refuse_true_curves,
-    with_chords_merged,
 )
 from workhold.files.outline.diagnostics import (
+    describe_strays,
+    name_layers_in_error,
     refuse_nothing_closed,
     refuse_open_outline,
-    stray_remarks,
-    with_layers_named,
 )
 from workhold.files.outline.joining import Loop
-from workhold.files.outline.nesting import DrawnPart, as_one, refuse_loops_across
-from workhold.files.outline.shared_lines import chosen_outline, outlines_of, spot_remarks
-from workhold.files.part.finding import found, kind_of, read_bytes
+from workhold.files.outline.nesting import DrawnPart, join_loops_as_one_part, refuse_loops_across
+from workhold.files.outline.shared_lines import choose_outline, describe_bad_spots, make_outlines
+from workhold.files.part.finding import detect_file_kind, find_part_file, read_bytes
 from workhold.files.questions import PART_NUMBER
 from workhold.model.own_outlines import name_outline
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
@@ -41,7 +41,15 @@ if TYPE_CHECKING:
     from workhold.files.step.by_height import HeightDrawing
     from workhold.files.step.usual_height import UsualHeight
 
-__all__ = ["Loaded", "built", "from_drawing", "from_heights", "refuse_large", "solids_in", "with_solid_named"]
+__all__ = [
+    "Loaded",
+    "build_workpiece",
+    "from_drawing",
+    "from_heights",
+    "refuse_large",
+    "solids_in",
+    "name_part_after_solid",
+]
 
 # A part of more segments than this is a scan or a picture, and would keep every later step busy for hours.
 MOST_SEGMENTS = 20_000
@@ -73,23 +81,23 @@ class Loaded:
 
 
 def from_heights(name: str, drawing: HeightDrawing) -> Loaded:
-    """A workpiece from the outline of a solid at the height of the pegs."""
+    """Return a workpiece from the outline of a solid at the height of the pegs."""
     refuse_large(sum(len(loop) for loop in drawing.loops))
     loops = [Loop(loop, ("",) * len(loop)) for loop in drawing.loops]
-    workpiece = built(name, loops, with_labels=False, solid=drawing.solid)
+    workpiece = build_workpiece(name, loops, with_labels=False, solid=drawing.solid)
     own = []
     for one in drawing.own:
         refuse_large(sum(len(loop) for loop in one.loops))
         rows = [Loop(loop, ("",) * len(loop)) for loop in one.loops]
         between = name_outline((one.solid.low, one.solid.peg_height))
-        own.append((one.role, built(between, rows, with_labels=False, solid=one.solid)))
+        own.append((one.role, build_workpiece(between, rows, with_labels=False, solid=one.solid)))
     if own:
         workpiece = evolve(workpiece, outlines=tuple(own))
     remarks = (*drawing.remarks, *workpiece.remarks)
     return Loaded(
         workpiece,
         remarks,
-        (as_one(loops),),
+        (join_loops_as_one_part(loops),),
         heights=drawing.heights,
         solids=drawing.solids,
         usual=drawing.usual,
@@ -105,18 +113,18 @@ def from_drawing(
     layered: bool = False,
     budget: Budget | None = None,
 ) -> Loaded:
-    """A workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
+    """Return a workpiece from a drawing's chains; ``layered`` says whether its layers can be chosen.
 
     What reading the file may still take is left in ``budget``; None is no limit. Refuses a drawing without a
     usable closed outline, or with curves that nobody has allowed to be replaced.
     """
     budget = budget or Budget(UNLIMITED)
     try:
-        return outline_of(path, drawing, part_number, tolerance, fit, layered, budget)
+        return make_loaded_outline(path, drawing, part_number, tolerance, fit, layered, budget)
     except InputError as error:
         if not drawing.layers:
             raise
-        raise with_layers_named(
+        raise name_layers_in_error(
             error, drawing, partial(is_usable, path, part_number, tolerance, fit, budget)
         ) from error
 
@@ -130,13 +138,13 @@ def is_usable(
     drawing: Drawing,
 ) -> bool:
     try:
-        outline_of(path, drawing, part_number, tolerance, fit, True, budget)
+        make_loaded_outline(path, drawing, part_number, tolerance, fit, True, budget)
     except InputError:
         return False
     return True
 
 
-def outline_of(
+def make_loaded_outline(
     path: Path,
     drawing: Drawing,
     part_number: int | str | None,
@@ -145,44 +153,44 @@ def outline_of(
     layered: bool,
     budget: Budget,
 ) -> Loaded:
-    """The workpiece, or a refusal, see :func:`from_drawing`."""
-    clean = cleaned(drawing.chains)
-    outlines = outlines_of(clean.chains, tolerance, drawing, budget)
+    """Return the workpiece, or a refusal, see :func:`from_drawing`."""
+    clean = drop_zero_lengths(drawing.chains)
+    outlines = make_outlines(clean.chains, tolerance, drawing, budget)
     parts = outlines.parts
     if not parts and outlines.spots:
         raise outlines.spots[0].junction.refusal
     if not parts:
         refuse_nothing_closed(outlines.strays, drawing.remarks)
     budget.check_time()
-    part = chosen_outline(outlines, part_number)
+    part = choose_outline(outlines, part_number)
     if part_number is None:
         refuse_open_outline(part, outlines.strays)
     labels = [label for loop in part.loops for label in loop.labels]
     refuse_true_curves(labels, drawing.curves, fit, layered, budget)
-    departure, of_curves = curve_remarks(labels, drawing.curves)
-    loops, more, of_chords = with_chords_merged(part.loops, drawing.curves, fit, budget)
+    departure, of_curves = describe_curve_fit(labels, drawing.curves)
+    loops, more, of_chords = merge_short_chords(part.loops, drawing.curves, fit, budget)
     departure += more
     merged = evolve(part, loops=loops)
     refuse_large(merged.segment_count)
     try:
-        workpiece = built(path.stem, loops, departure=departure)
+        workpiece = build_workpiece(path.stem, loops, departure=departure)
         refuse_loops_across(merged, [other for other in parts if other is not part], budget)
     except ZeroDivisionError as error:  # pragma: no cover - geometry checks first
         raise InputError("the outline has a segment too short to use: simplify the drawing.") from error
     remarks = (*drawing.remarks, *clean.remarks, *outlines.remarks, *of_curves, *of_chords)
-    remarks += (*workpiece.remarks, *departure_remark(departure), *stray_remarks(outlines.strays))
-    remarks += (*spot_remarks(outlines), *part_remarks(parts, part, part_number))
+    remarks += (*workpiece.remarks, *describe_departure(departure), *describe_strays(outlines.strays))
+    remarks += (*describe_bad_spots(outlines), *describe_other_parts(parts, part, part_number))
     return Loaded(workpiece, remarks, parts, part.number, solids=drawing.solids)
 
 
-def built(
+def build_workpiece(
     name: str,
     loops: Sequence[Loop],
     with_labels: bool = True,
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """Builds the workpiece; its complaints lose the part's name, since the file's name stands before them."""
+    """Build the workpiece; its complaints lose the part's name, since the file's name stands before them."""
     labels = [loop.labels for loop in loops] if with_labels else None
     try:
         return Workpiece.from_loops(name, [loop.vertices for loop in loops], labels, departure, solid)
@@ -191,7 +199,7 @@ def built(
 
 
 def refuse_large(segments: int) -> None:
-    """Raises an InputError for a part of so many segments that no fixture search would end."""
+    """Raise an InputError for a part of so many segments that no fixture search would end."""
     if segments > MOST_SEGMENTS:
         raise InputError(
             f"the part has {segments} segments, more than the {MOST_SEGMENTS} this program takes: draw its "
@@ -199,7 +207,7 @@ def refuse_large(segments: int) -> None:
         )
 
 
-def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
+def describe_other_parts(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str | None) -> list[str]:
     if len(parts) == 1:
         return []
     more = f"; and {len(parts) - PART_LIST} smaller ones" if len(parts) > PART_LIST else ""
@@ -211,7 +219,7 @@ def part_remarks(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: int | str
 
 
 def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
-    """Lists the solids of a STEP file by decreasing volume, with their names where the file has them.
+    """List the solids of a STEP file by decreasing volume, with their names where the file has them.
 
     ``load`` takes one of them by its number or its name.
 
@@ -229,20 +237,20 @@ def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
     InputError
         For a file that cannot be read, is of another kind, or has no solid; naming the file.
     """
-    file = found(path)
+    file = find_part_file(path)
     try:
         content = read_bytes(file)
-        if kind_of(file, content) != "step":
+        if detect_file_kind(file, content) != "step":
             raise InputError("only STEP files have solids.")
-        from workhold.files.step.solids import listed_solids
+        from workhold.files.step.solids import list_solids
 
-        return listed_solids(content)
+        return list_solids(content)
     except InputError as error:
         raise InputError(f"{file.name}: {error}") from error
 
 
-def with_solid_named(loaded: Loaded, file: str, chosen: int | str | None) -> Loaded:
-    """A part named after its solid too, where the file holds several with names: ``lug of machine``.
+def name_part_after_solid(loaded: Loaded, file: str, chosen: int | str | None) -> Loaded:
+    """Return a part named after its solid too, where the file holds several with names: ``lug of machine``.
 
     ``chosen`` is the number or the name of the solid that was read; None is the largest.
     """
@@ -253,7 +261,7 @@ def with_solid_named(loaded: Loaded, file: str, chosen: int | str | None) -> Loa
 
 
 def name_of_chosen(solids: Sequence[FileSolid], chosen: int | str | None) -> str:
-    """What the file calls the solid of a number or a name; empty where it does not."""
+    """Return what the file calls the solid of a number or a name; empty where it does not."""
     if not isinstance(chosen, str):
         return solids[(chosen or 1) - 1].name
     asked = " ".join(chosen.split())

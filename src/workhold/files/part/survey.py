@@ -24,24 +24,24 @@ from attrs import evolve, frozen
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget, OverBudgetError
 from workhold.files.dxf.reader import (
-    damaged,
-    opened,
+    make_damage_error,
+    open_document,
+    read_unit_code,
     refuse_crowded,
     refuse_other_formats,
     scale_of,
-    unit_code,
 )
 from workhold.files.dxf.walk import BlockNesting, DxfWalk
-from workhold.files.outline.chain import Chain, Drawing, Placement, cleaned
-from workhold.files.outline.diagnostics import size_of
+from workhold.files.outline.chain import Chain, Drawing, Placement, drop_zero_lengths
+from workhold.files.outline.diagnostics import measure_size
 from workhold.files.outline.joining import Loop, join
-from workhold.files.outline.nesting import DrawnPart, nest
-from workhold.files.part.finding import found, kind_of, read_bytes
+from workhold.files.outline.nesting import DrawnPart, nest_loops
+from workhold.files.part.finding import detect_file_kind, find_part_file, read_bytes
 from workhold.files.part.load import Loaded, read_workpiece
-from workhold.files.questions import MARK, UNIT, worded
+from workhold.files.questions import MARK, UNIT, name_questions
 from workhold.model.solid import FileSolid
 
-__all__ = ["DrawnLayer", "Survey", "drawn_layers", "survey"]
+__all__ = ["DrawnLayer", "Survey", "list_drawn_layers", "survey_part_file"]
 
 
 @frozen
@@ -74,10 +74,10 @@ class LayerWalk(DxfWalk):
         self.kinds: dict[str, Counter[str]] = {}
 
     def visit(self, entity: Any, nest: BlockNesting) -> None:
-        """Counts an entity, and collect its chain where it has one."""
+        """Count an entity, and collect its chain where it has one."""
         kind = entity.dxftype()
         if kind != "INSERT":
-            self.kinds.setdefault(self.effective_layer(entity, nest), Counter())[kind] += 1
+            self.kinds.setdefault(self.find_effective_layer(entity, nest), Counter())[kind] += 1
         try:
             super().visit(entity, nest)
         except OverBudgetError:
@@ -86,36 +86,38 @@ class LayerWalk(DxfWalk):
             self.level = None
 
     def is_used(self, entity: Any, layer: str, nest: BlockNesting) -> bool:
-        """Everything is looked at."""
+        """Return True: everything is looked at."""
         return True
 
 
-def drawn_layers(
+def list_drawn_layers(
     path: str | Path, unit: str | None, usual_unit: str | None
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
-    """The layers of a DXF file with something on them, by name, and whether their sizes are in mm.
+    """Return the layers of a DXF file with something on them, by name, and whether their sizes are in mm.
 
     Raises
     ------
     InputError
         For a file that is none, or damaged.
     """
-    file = found(path)
+    file = find_part_file(path)
     content = read_bytes(file)
-    if kind_of(file, content) != "dxf":
+    if detect_file_kind(file, content) != "dxf":
         raise InputError(f"{file.name}: only DXF files have layers.")
     try:
         refuse_other_formats(content)
         budget = Budget(LIMITS["dxf"], len(content))
         refuse_crowded(content, budget)
-        document, _ = opened(file)
+        document, _ = open_document(file)
         with np.errstate(all="ignore"):
-            return layers_of(document, unit_code(document, content), unit, usual_unit, budget)
+            return list_layers_of_document(
+                document, read_unit_code(document, content), unit, usual_unit, budget
+            )
     except InputError as error:
         raise InputError(f"{file.name}: {error}") from error
 
 
-def layers_of(
+def list_layers_of_document(
     document: Any, code: int | str, unit: str | None, usual_unit: str | None, budget: Budget
 ) -> tuple[tuple[DrawnLayer, ...], bool]:
     known = scale_of(code, unit, usual_unit)
@@ -123,7 +125,7 @@ def layers_of(
     try:
         walk, space = LayerWalk(document, budget), document.modelspace()
     except Exception as error:  # tables and layouts of a damaged file may fail in any way
-        raise damaged(error) from error
+        raise make_damage_error(error) from error
     walk.visit_all(space, BlockNesting(Placement(a=scale, d=scale, height_scale=scale)))
     layers = []
     on_layer: dict[str | None, list[Chain]] = {}
@@ -131,27 +133,34 @@ def layers_of(
         on_layer.setdefault(walk.layers.get(chain.labels[0]), []).append(chain)
     for name in sorted(walk.kinds, key=str.casefold):
         budget.check_time()
-        chains = usable(on_layer.get(name, []))
+        chains = drop_unusable_chains(on_layer.get(name, []))
         hidden = name.casefold() in walk.hidden_layers
         layers.append(
-            DrawnLayer(name, walk.kinds[name], hidden, loops_of(chains), size_of(chains), tuple(chains))
+            DrawnLayer(
+                name,
+                walk.kinds[name],
+                hidden,
+                count_closed_outlines(chains),
+                measure_size(chains),
+                tuple(chains),
+            )
         )
     return tuple(layers), known is not None
 
 
-def usable(chains: list[Chain]) -> list[Chain]:
-    """Chains, or none of them where a number is none or far too large."""
+def drop_unusable_chains(chains: list[Chain]) -> list[Chain]:
+    """Return the chains, or none of them where a number is none or far too large."""
     try:
-        cleaned(chains)
+        drop_zero_lengths(chains)
     except InputError:
         return []
     return chains
 
 
-def loops_of(chains: list[Chain]) -> int | None:
-    """How many closed outlines chains make; None where they could go on in more than one way."""
+def count_closed_outlines(chains: list[Chain]) -> int | None:
+    """Return how many closed outlines chains make; None where they could go on in more than one way."""
     try:
-        joined = join(cleaned(chains).chains, 1e-3)
+        joined = join(drop_zero_lengths(chains).chains, 1e-3)
         return None if joined.junctions else len(joined.loops)
     except InputError:
         return None
@@ -195,8 +204,8 @@ class Survey:
     pixels: tuple[float, float] | None = None
 
 
-def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
-    """Reads a part as far as it goes.
+def survey_part_file(path: Path, *, called: Mapping[str, str] | None = None, **options: Any) -> Survey:
+    """Read a part as far as it goes.
 
     Parameters
     ----------
@@ -217,42 +226,44 @@ def survey(path: Path, *, called: Mapping[str, str] | None = None, **options: An
         sentence, is_over = str(error), OverBudgetError.is_behind(error)
     asked = tuple(dict.fromkeys(mark[1:-1] for mark in MARK.findall(sentence)))
     if loaded is not None:
-        loaded = evolve(loaded, remarks=tuple(worded(remark, called) for remark in loaded.remarks))
-    told = Survey(loaded, worded(sentence, called), asked, None, (), (), ())
+        loaded = evolve(loaded, remarks=tuple(name_questions(remark, called) for remark in loaded.remarks))
+    told = Survey(loaded, name_questions(sentence, called), asked, None, (), (), ())
     if not is_over:
         with suppress(OverBudgetError):
-            told = seen(told, path, content, ANY_UNIT if UNIT in sentence else None, options)
+            told = add_drawn_content(told, path, content, ANY_UNIT if UNIT in sentence else None, options)
     return told
 
 
-def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]) -> Survey:
-    """A survey with what is drawn in the file, for which it is read again.
+def add_drawn_content(
+    told: Survey, path: Path, content: bytes, unit: str | None, options: Mapping[str, Any]
+) -> Survey:
+    """Return a survey with what is drawn in the file, for which it is read again.
 
-    It is read in ``unit`` where its own is asked; options are those of :func:`survey`. Raises OverBudgetError
+    It is read in ``unit`` where its own is asked; options are those of :func:`survey_part_file`. Raises OverBudgetError
     where that takes too much.
     """
     kind = ""
     with suppress(InputError):
-        kind = kind_of(path, content)
-    drawing = drawing_of(kind, path, content, options if unit is None else {**options, "unit": unit})
+        kind = detect_file_kind(path, content)
+    drawing = read_all_drawn(kind, path, content, options if unit is None else {**options, "unit": unit})
     chains = tuple[Chain, ...]()
     with suppress(InputError):
-        chains = cleaned(drawing.chains).chains
-    size = size_of(chains)
-    gaps, parts = gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
+        chains = drop_zero_lengths(drawing.chains).chains
+    size = measure_size(chains)
+    gaps, parts = find_gaps_and_parts(chains, options.get("join_tolerance", 1e-3), size)
     layers = tuple[DrawnLayer, ...]()
-    with going_on():
-        drawn = drawn_layers(path, unit or options.get("unit"), None)[0] if kind == "dxf" else ()
+    with ignore_refusals():
+        drawn = list_drawn_layers(path, unit or options.get("unit"), None)[0] if kind == "dxf" else ()
         layers = tuple(layer for layer in drawn if layer.chains)
     if told.loaded is not None:
         parts, solids = told.loaded.parts, told.loaded.solids
     else:
-        solids = solids_of(content) if kind == "step" else ()
+        solids = list_refused_solids(content) if kind == "step" else ()
     pixels = None
     if unit is not None and kind == "svg":
         # A unit in which a pixel is a millimetre, so that the size is a number of them.
-        drawn_in_pixels = drawing_of(kind, path, content, {**options, "unit": ONE_PIXEL})
-        pixels = size_of(cleaned(drawn_in_pixels.chains).chains)
+        drawn_in_pixels = read_all_drawn(kind, path, content, {**options, "unit": ONE_PIXEL})
+        pixels = measure_size(drop_zero_lengths(drawn_in_pixels.chains).chains)
     return evolve(
         told,
         size=size,
@@ -266,8 +277,8 @@ def seen(told: Survey, path: Path, content: bytes, unit: str | None, options: Ma
 
 
 @contextmanager
-def going_on() -> Iterator[None]:
-    """Passes over what is refused, but not over what takes too much.
+def ignore_refusals() -> Iterator[None]:
+    """Pass over what is refused, but not over what takes too much.
 
     An OverBudgetError is raised: that is not tried once more.
     """
@@ -281,10 +292,10 @@ def going_on() -> Iterator[None]:
 MARKS = {mark[1:-1]: mark for mark in re.findall(r"<\w+>", MARK.pattern)}
 
 
-def drawing_of(kind: str, path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
-    """All that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
+def read_all_drawn(kind: str, path: Path, content: bytes, options: Mapping[str, Any]) -> Drawing:
+    """Return all that is drawn in a DXF or SVG file, nothing where it cannot be read, or holds no drawing."""
     taken = {name: options.get(name) for name in ("unit", "fit")}
-    with going_on():
+    with ignore_refusals():
         if kind == "dxf":
             from workhold.files.dxf.reader import read_dxf
 
@@ -298,27 +309,27 @@ def drawing_of(kind: str, path: Path, content: bytes, options: Mapping[str, Any]
     return Drawing(())
 
 
-def solids_of(content: bytes) -> tuple[FileSolid, ...]:
-    """The solids of a STEP file whose outline was refused; none where it is damaged."""
+def list_refused_solids(content: bytes) -> tuple[FileSolid, ...]:
+    """Return the solids of a STEP file whose outline was refused; none where it is damaged."""
     with suppress(InputError):
-        from workhold.files.step.solids import listed_solids
+        from workhold.files.step.solids import list_solids
 
-        return listed_solids(content)
+        return list_solids(content)
     return ()
 
 
-def nest_of(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
-    """The parts that loops make; none where it takes too long to tell."""
+def try_to_nest(loops: Sequence[Loop]) -> tuple[DrawnPart, ...]:
+    """Return the parts that loops make; none where it takes too long to tell."""
     try:
-        return nest(loops, Budget(LIMITS["dxf"]))
+        return nest_loops(loops, Budget(LIMITS["dxf"]))
     except InputError:
         return ()
 
 
-def gaps_and_parts(
+def find_gaps_and_parts(
     chains: tuple[Chain, ...], tolerance: float, size: tuple[float, float] | None
 ) -> tuple[tuple[float, ...], tuple[DrawnPart, ...]]:
-    """The gaps between loose ends, and the parts that there are with those up to a tolerance (mm) closed."""
+    """Return the gaps between loose ends, and the parts that there are with those up to a tolerance (mm) closed."""
     if size is None:
         return (), ()
     try:
@@ -339,4 +350,4 @@ def gaps_and_parts(
         away[k] = np.inf
         found.add(float(f"{away.min():.6g}"))
     widest = WIDEST_GAP * hypot(*size)
-    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), nest_of(joined.loops)
+    return tuple(sorted(gap for gap in found if 0.0 < gap <= widest)), try_to_nest(joined.loops)

@@ -16,9 +16,9 @@ from workhold.files.program.path import (
     PathWriter,
     Place,
     Reached,
-    arc_about,
-    arc_of_radius,
-    drill,
+    drill_holes,
+    make_arc_about_center,
+    make_arc_of_radius,
     refuse_unknown,
 )
 from workhold.files.program.words import (
@@ -34,8 +34,8 @@ from workhold.files.program.words import (
     VISITS,
     Modes,
     ProgramBlock,
-    code_of,
     is_spline,
+    normalize_code,
     refuse_code,
     refuse_function,
 )
@@ -106,7 +106,7 @@ class Interpreter:
         return self.path.modes
 
     def read(self, block: ProgramBlock) -> None:
-        """Takes a block.
+        """Take a block.
 
         Raises
         ------
@@ -121,9 +121,9 @@ class Interpreter:
         pointed = False
         for letter, text in block.words:
             if letter == "G":
-                self.add_code(codes, code_of(text))
+                self.add_code(codes, normalize_code(text))
             elif letter == "M":
-                functions.append(code_of(text))
+                functions.append(normalize_code(text))
             elif letter in values:
                 raise InputError(f"{letter} stands twice: leave one of them out.")
             else:
@@ -137,7 +137,7 @@ class Interpreter:
                         whole.append(letter)
         once = codes.get("once")
         if values.keys() & OTHER_AXES:
-            self.stay(codes, values)
+            self.drop_further_axes(codes, values)
         if (whole or pointed) and once != "4" and not (codes and self.looks_ahead(codes)):
             self.pointed = self.pointed or pointed
             if whole:
@@ -158,7 +158,7 @@ class Interpreter:
             )
 
     def add_code(self, codes: dict[str, str], code: str) -> None:
-        """Adds a code to those of the block by its group; refuses one that is not read, and two of one group."""
+        """Add a code to those of the block by its group; refuse one that is not read, and two of one group."""
         group = GROUPS.get(code)
         if group is None:
             refuse_code(code)
@@ -169,8 +169,8 @@ class Interpreter:
             )
         codes[group] = code
 
-    def stay(self, codes: dict[str, str], values: dict[str, float]) -> None:
-        """Takes the words of further axes out of a block; refuses one that moves any of them."""
+    def drop_further_axes(self, codes: dict[str, str], values: dict[str, float]) -> None:
+        """Take the words of further axes out of a block; refuse one that moves any of them."""
         once, distance = codes.get("once"), codes.get("distance", self.modes.distance)
         if once == "4":
             # U is the time of a dwell.
@@ -194,11 +194,11 @@ class Interpreter:
                 )
 
     def looks_ahead(self, codes: dict[str, str]) -> bool:
-        """Whether a block has a code of how the control looks ahead, to which its numbers may belong."""
+        """Return whether a block has a code of how the control looks ahead, to which its numbers may belong."""
         return any(code in LOOK_AHEAD for code in codes.values())
 
     def count_whole(self, letters: list[str], codes: dict[str, str], values: dict[str, float]) -> None:
-        """Remembers lengths without a decimal point, and makes them thousandths where they are."""
+        """Remember lengths without a decimal point, and make them thousandths where they are."""
         self.whole.append(self.path.line)
         unit = UNITS[codes["unit"]] if "unit" in codes else self.modes.unit
         if self.in_thousandths and unit is not None:
@@ -206,7 +206,7 @@ class Interpreter:
                 values[letter] *= LAST_DIGIT[unit.name]
 
     def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
-        """Takes what stays in force, and returns the letters that have a meaning.
+        """Take what stays in force, and return the letters that have a meaning.
 
         That is feed and speed, the tool, its length, unit, plane, zero and how places are written. Refuses
         functions that are not read, and a change to no tool.
@@ -230,18 +230,18 @@ class Interpreter:
                 raise InputError(f"T{values['T']:g} is not a tool: write a whole number.")
             modes.called = int(values["T"])
             if not self.changes:
-                self.change_tool()
+                self.mount_called_tool()
         if "6" in functions:
             if modes.called is None:
                 raise InputError("M6 changes to a tool that no T has named: write T and its number before.")
-            self.change_tool()
+            self.mount_called_tool()
         if "length" in codes:
             used.add("H")
-            self.change_length(codes["length"], values.get("H"))
+            self.change_length_offset(codes["length"], values.get("H"))
         return used
 
     def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Puts the codes of a block in force that stay so; passes over those that say nothing of the path.
+        """Put the codes of a block in force that stay so; passes over those that say nothing of the path.
 
         Returns the letters that belong to them. Refuses a spline, and a zero with a number that is none.
         """
@@ -269,23 +269,23 @@ class Interpreter:
                     )
                 used.add("P")
                 zero += f" P{values['P']:g}"
-            self.path.change_zero(zero)
+            self.path.set_zero_offset(zero)
         modes.distance = codes.get("distance", modes.distance)
         modes.centre = codes.get("centre", modes.centre)
         modes.back = codes.get("return", modes.back)
         self.distance_said = self.distance_said or "distance" in codes
         return used
 
-    def change_tool(self) -> None:
-        """Puts the tool that was called into the spindle; X, Y and Z stay what they were (NISTIR 6556, 3.6.3)."""
+    def mount_called_tool(self) -> None:
+        """Put the tool that was called into the spindle; X, Y and Z stay what they were (NISTIR 6556, 3.6.3)."""
         modes = self.modes
         if modes.called != modes.tool:
             modes.tool = modes.called
             assert modes.called is not None
             self.calls.append((self.path.line, modes.called))
 
-    def change_length(self, code: str, number: float | None) -> None:
-        """Puts a tool's length in force (G43), or takes it away (G49); its tip is at another height then.
+    def change_length_offset(self, code: str, number: float | None) -> None:
+        """Put a tool's length in force (G43), or takes it away (G49); its tip is at another height then.
 
         The number of the length is H; 0 is none.
         """
@@ -299,11 +299,11 @@ class Interpreter:
                 self.other_lengths.append(self.path.line)
         if length != modes.length:
             why = NOSE if length == NOSE else f"line {self.path.line} changes the tool's length (G{code})"
-            self.path.lose([2], why)
+            self.path.forget_position([2], why)
             modes.length = length
 
     def move(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Makes the move of a block, if it has one, and returns the letters that have a meaning."""
+        """Make the move of a block, if it has one, and return the letters that have a meaning."""
         used: set[str] = set()
         once = codes.get("once")
         if once == "4":
@@ -321,7 +321,7 @@ class Interpreter:
         motion, cycle = self.modes.motion, self.modes.cycle
         if cycle is not None:
             if values.keys() & {"X", "Y", "Z", "R"}:
-                return used | drill(self.path, values)
+                return used | drill_holes(self.path, values)
             if codes.get("cycle") in CYCLES:
                 raise InputError(
                     f"G{cycle} stands without X, Y, Z or R, where one control drills and another does not: write "
@@ -335,11 +335,11 @@ class Interpreter:
             return used
         if motion is None:
             raise InputError("a place stands without G0, G1, G2 or G3 in force: write which of them it is.")
-        self.path.move_to(self.path.target(values, motion == "0"), motion != "0")
+        self.path.move_to(self.path.compute_target_position(values, motion == "0"), motion != "0")
         return used | wanted
 
     def change_motion(self, codes: dict[str, str]) -> None:
-        """Puts the motion of a block in force, or its cycle, which begins anew after any other motion.
+        """Put the motion of a block in force, or its cycle, which begins anew after any other motion.
 
         Refuses both together.
         """
@@ -354,7 +354,7 @@ class Interpreter:
             modes.cycle, modes.sticky = cycle, {}
 
     def move_once(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Takes a move to a place of the machine's own, after which nobody knows where the axes are.
+        """Take a move to a place of the machine's own, after which nobody knows where the axes are.
 
         Refuses G53 with anything but G0, and a place that is passed and not known.
         """
@@ -375,17 +375,17 @@ class Interpreter:
                 if letter in values and not (self.modes.distance == "91" and self.modes.place[axis] is None)
             }
             if passed:
-                self.path.move_to(self.path.target(passed), cutting=False)
+                self.path.move_to(self.path.compute_target_position(passed), cutting=False)
         # G28 and G30 alone move all axes.
         alone = once != "53" and not axes and not values.keys() & ROTARY
         lost = [axis for axis, letter in enumerate(AXES) if letter in axes or alone]
-        self.path.lose(lost, f"line {self.path.line} goes to a place of the machine's own")
+        self.path.forget_position(lost, f"line {self.path.line} goes to a place of the machine's own")
         self.skipped.append(self.path.line)
         # P numbers the places of G30.
         return axes | ROTARY | ({"P"} if once == "30" else set())
 
     def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Takes a word that could set another zero, where it sets none.
+        """Take a word that could set another zero, where it sets none.
 
         G52 with 0 is none, and so is taking back what was never set. G92 before anything else says where the
         tip stands. Refuses every other zero, and one beside a place.
@@ -405,13 +405,13 @@ class Interpreter:
                 refuse_code(code)
             for axis, letter in enumerate(AXES):
                 if letter in axes:
-                    modes.place[axis] = self.path.length(values[letter])
+                    modes.place[axis] = self.path.convert_to_mm(values[letter])
             modes.named = True
             self.presets.append(self.path.line)
         return set(axes)
 
     def move_along_arc(self, clockwise: bool, values: dict[str, float]) -> set[str]:
-        """Moves along an arc or a helix about z.
+        """Move along an arc or a helix about z.
 
         Refuses an arc that is not known, or stands in another plane.
         """
@@ -423,20 +423,23 @@ class Interpreter:
             )
         if values.get("K", 0.0) != 0.0:
             raise InputError("K belongs to arcs in another plane than G17: take it out.")
-        start, end = self.known(modes.place), self.known(self.path.target(values))
-        turns = self.turns_of(values)
+        start, end = (
+            self.require_known_place(modes.place),
+            self.require_known_place(self.path.compute_target_position(values)),
+        )
+        turns = self.read_arc_turns(values)
         if "R" in values:
             if values.keys() & {"I", "J"} or turns != 1:
                 raise InputError("an arc has R, and I, J or P besides: write R alone, or I and J.")
-            arc = arc_of_radius(self.path.length(values["R"]), start, end, clockwise)
+            arc = make_arc_of_radius(self.path.convert_to_mm(values["R"]), start, end, clockwise)
         else:
-            arc = arc_about(self.centre_of(values), start, end, clockwise, turns)
+            arc = make_arc_about_center(self.centre_of(values), start, end, clockwise, turns)
         for place, bulge in arc.spans(start, end):
             self.path.move_to(list(place), True, bulge)
         return {"X", "Y", "Z", "I", "J", "K", "R", "P"}
 
     def centre_of(self, values: dict[str, float]) -> tuple[float, float]:
-        """Where I and J say that an arc's centre is; refuses an arc without them."""
+        """Return where I and J say that an arc's centre is; refuse an arc without them."""
         given = values.keys() & {"I", "J"}
         if not given or (self.modes.centre == "90.1" and len(given) < 2):
             raise InputError(
@@ -444,15 +447,15 @@ class Interpreter:
                 if not given
                 else "after G90.1 an arc's centre needs both I and J: write both."
             )
-        x, y = (self.path.length(values.get(letter, 0.0)) for letter in "IJ")
+        x, y = (self.path.convert_to_mm(values.get(letter, 0.0)) for letter in "IJ")
         if self.modes.centre == "90.1":
             return x, y
         from_x, from_y, _ = self.modes.place
         assert from_x is not None and from_y is not None
         return from_x + x, from_y + y
 
-    def turns_of(self, values: dict[str, float]) -> int:
-        """How many turns an arc makes at most, P; refuses a number that is none."""
+    def read_arc_turns(self, values: dict[str, float]) -> int:
+        """Return how many turns an arc makes at most, P; refuse a number that is none."""
         turns = values.get("P", 1.0)
         if turns != int(turns) or not 1 <= turns <= MOST_TURNS:
             raise InputError(
@@ -460,8 +463,8 @@ class Interpreter:
             )
         return int(turns)
 
-    def known(self, place: Reached) -> Place:
-        """A place of an arc of which all is known; refuses one of which something is not."""
+    def require_known_place(self, place: Reached) -> Place:
+        """Return a place of an arc of which all is known; refuse one of which something is not."""
         x, y, z = place
         if x is None or y is None or z is None:
             refuse_unknown(self.path, place, "an arc begins at a place")

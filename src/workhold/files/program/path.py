@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from attrs import define, field, frozen
 
 from workhold.conventions import ARC_RADII
-from workhold.errors import InputError, listed
+from workhold.errors import InputError, join_words
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.program.words import AT_FEED_UP, NOSE, Modes
 from workhold.files.questions import START
@@ -28,9 +28,9 @@ __all__ = [
     "Place",
     "PlaneArc",
     "Reached",
-    "arc_about",
-    "arc_of_radius",
-    "drill",
+    "make_arc_about_center",
+    "make_arc_of_radius",
+    "drill_holes",
     "refuse_unknown",
 ]
 
@@ -77,7 +77,7 @@ class PathWriter:
     budget: Budget = field(factory=lambda: Budget(LIMITS["program"]))
 
     def scale(self) -> float:
-        """Millimetres in the unit in force.
+        """Return the millimetres in the unit in force.
 
         Raises
         ------
@@ -91,8 +91,8 @@ class PathWriter:
             )
         return self.modes.unit.millimetres
 
-    def length(self, value: float) -> float:
-        """A length in mm from its number.
+    def convert_to_mm(self, value: float) -> float:
+        """Return a length in mm from its number.
 
         Raises
         ------
@@ -104,8 +104,8 @@ class PathWriter:
             raise InputError(f"the length {value:g} is beyond {MOST_LENGTH:g} mm: correct it.")
         return found
 
-    def target(self, values: dict[str, float], rapid: bool = False) -> Reached:
-        """Where the axis words of a block lead; refuses an increment from a place that is not known.
+    def compute_target_position(self, values: dict[str, float], rapid: bool = False) -> Reached:
+        """Return where the axis words of a block lead; refuse an increment from a place that is not known.
 
         ``rapid`` says whether the move may be left out as long as nobody knows where it begins.
         """
@@ -116,7 +116,7 @@ class PathWriter:
             if letter not in values:
                 continue
             self.modes.named = True
-            value = self.length(values[letter])
+            value = self.convert_to_mm(values[letter])
             if axis == 2 and self.modes.length == NOSE:
                 place[axis], self.modes.lost[axis] = None, NOSE
                 if rapid:
@@ -138,21 +138,21 @@ class PathWriter:
             place[axis] = value
         return place
 
-    def lose(self, axes: Iterable[int], why: str) -> None:
-        """Takes it that nobody knows any more where the tip is along some axes, and why."""
+    def forget_position(self, axes: Iterable[int], why: str) -> None:
+        """Take it that nobody knows any more where the tip is along some axes, and why."""
         for axis in axes:
             self.modes.place[axis], self.modes.lost[axis] = None, why
         if self.modes.place[2] is None:
             self.modes.initial = None
 
-    def change_zero(self, offset: str) -> None:
-        """Puts a zero in force; places that were named from another one are not known from it."""
+    def set_zero_offset(self, offset: str) -> None:
+        """Put a zero in force; places that were named from another one are not known from it."""
         if offset != self.modes.offset and self.modes.named:
-            self.lose(range(3), f"line {self.line} changes to another zero")
+            self.forget_position(range(3), f"line {self.line} changes to another zero")
         self.modes.offset = offset
 
     def refuse_other_zero(self) -> None:
-        """Refuses a place in a second zero."""
+        """Refuse a place in a second zero."""
         modes = self.modes
         if self.offset_used != modes.offset:
             raise InputError(
@@ -161,7 +161,7 @@ class PathWriter:
             )
 
     def move_to(self, place: Reached, cutting: bool, bulge: float = 0.0) -> None:
-        """Moves the tip; of a rapid move from a place that is not known, only where it arrives counts.
+        """Move the tip; of a rapid move from a place that is not known, only where it arrives counts.
 
         A cut straight down, or up, from a height that is not known is where it arrives as well.
 
@@ -191,11 +191,11 @@ class PathWriter:
             self.add(cutting, (from_x, from_y, from_z), end, bulge)
 
     def has_other_tool(self) -> bool:
-        """Whether the tool has come into the spindle where the one before it moved last, and stands there."""
+        """Return whether the tool has come into the spindle where the one before it moved last, and stands there."""
         return bool(self.rows) and self.rows[-1][1] != self.modes.tool and self.modes.tool is not None
 
     def add(self, cutting: bool, start: Place, end: Place, bulge: float) -> None:
-        """Adds a move.
+        """Add a move.
 
         Raises
         ------
@@ -216,7 +216,7 @@ class PathWriter:
 
 
 def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts at a place") -> NoReturn:
-    """Refuses a cut at a place of which something is not known, with why it is not, and what helps.
+    """Refuse a cut at a place of which something is not known, with why it is not, and what helps.
 
     ``what`` says what is done there.
     """
@@ -225,7 +225,7 @@ def refuse_unknown(path: PathWriter, place: Reached, what: str = "the tool cuts 
         unknown.setdefault(path.modes.lost[axis], []).append(axis)
     reasons, remedies = [], []
     for why, axes in unknown.items():
-        names = listed([AXES[axis] for axis in axes])
+        names = join_words([AXES[axis] for axis in axes])
         remedies.append(f"write {names} with G0 before it")
         if axes == [2] and not path.has_heights:
             reasons.append("no height (Z) is given anywhere in the program")
@@ -256,7 +256,7 @@ class PlaneArc:
     sweep: float
 
     def spans(self, start: Place, end: Place) -> Iterator[tuple[Place, float]]:
-        """The end and the bulge of each span; none is more than half a turn.
+        """Yield the end and the bulge of each span; none is more than half a turn.
 
         Where the ends are not equally far from the centre, the distance changes with the sweep.
         """
@@ -274,8 +274,8 @@ class PlaneArc:
         yield end, bulge
 
 
-def arc_about(center: Point, start: Place, end: Place, clockwise: bool, turns: int) -> PlaneArc:
-    """An arc about a centre; where its ends are one place, it is a full circle.
+def make_arc_about_center(center: Point, start: Place, end: Place, clockwise: bool, turns: int) -> PlaneArc:
+    """Return an arc about a centre; where its ends are one place, it is a full circle.
 
     Refuses ends that are not equally far from the centre.
     """
@@ -298,8 +298,8 @@ def arc_about(center: Point, start: Place, end: Place, clockwise: bool, turns: i
     return PlaneArc(center, -angle if clockwise else angle)
 
 
-def arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> PlaneArc:
-    """An arc of a radius; of more than half a turn where the radius is negative.
+def make_arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> PlaneArc:
+    """Return an arc of a radius; of more than half a turn where the radius is negative.
 
     Refuses one place as both ends, and ends too far apart.
     """
@@ -323,17 +323,17 @@ def arc_of_radius(radius: float, start: Place, end: Place, clockwise: bool) -> P
     return PlaneArc(center, -sweep if clockwise else sweep)
 
 
-def drill(path: PathWriter, values: dict[str, float]) -> set[str]:
-    """Drills a hole, or a row of them in increments: over it, down to R, to Z at the feed, and up again.
+def drill_holes(path: PathWriter, values: dict[str, float]) -> set[str]:
+    """Drill a hole, or a row of them in increments: over it, down to R, to Z at the feed, and up again.
 
     Returns the letters that have a meaning. Refuses a cycle that lacks something, or that controls read in
     different ways.
     """
     modes = path.modes
-    bottom, plane = depths(path, values)
+    bottom, plane = read_drilling_heights(path, values)
     initial, slow = modes.initial, modes.cycle in AT_FEED_UP
-    for _ in range(repeats(path, values)):
-        x, y, z = path.target({key: values[key] for key in ("X", "Y") if key in values})
+    for _ in range(read_drilling_repeats(path, values)):
+        x, y, z = path.compute_target_position({key: values[key] for key in ("X", "Y") if key in values})
         if x is None or y is None:
             refuse_unknown(path, [x, y, z], "a hole is drilled at a place")
         path.move_to([x, y, z], cutting=False)
@@ -346,8 +346,9 @@ def drill(path: PathWriter, values: dict[str, float]) -> set[str]:
     return {"X", "Y", "Z", "R", "Q", "P", "L", "K"}
 
 
-def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
-    """Heights of the hole's bottom and of the plane R in mm; those that a block does not give stay in force.
+def read_drilling_heights(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
+    """Return the heights of the hole's bottom and of the plane R in mm; those that a block does not give stay
+    in force.
 
     Refuses a cycle where one is missing, or where they do not follow each other downward.
     """
@@ -364,11 +365,11 @@ def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
                 "different ways: write it after G90."
             )
         if "R" in values:
-            sticky["R"] = initial + path.length(values["R"])
+            sticky["R"] = initial + path.convert_to_mm(values["R"])
         if "Z" in values and "R" in sticky:
-            sticky["Z"] = sticky["R"] + path.length(values["Z"])
+            sticky["Z"] = sticky["R"] + path.convert_to_mm(values["Z"])
     else:
-        sticky.update({key: path.length(values[key]) for key in "RZ" if key in values})
+        sticky.update({key: path.convert_to_mm(values[key]) for key in "RZ" if key in values})
     for key, what in (("R", "the plane to which it returns"), ("Z", "the bottom of its hole")):
         if key not in sticky:
             raise InputError(f"a drill cycle has no {key}, {what}: write it.")
@@ -389,8 +390,8 @@ def depths(path: PathWriter, values: dict[str, float]) -> tuple[float, float]:
     return bottom, plane
 
 
-def repeats(path: PathWriter, values: dict[str, float]) -> int:
-    """How often a block drills: L, or K on other controls; refuses both, and a number that is none."""
+def read_drilling_repeats(path: PathWriter, values: dict[str, float]) -> int:
+    """Return how often a block drills: L, or K on other controls; refuse both, and a number that is none."""
     given = [values[key] for key in "LK" if key in values]
     if len(given) > 1:
         raise InputError("a drill cycle has both L and K: write one of them.")

@@ -11,16 +11,28 @@ from typing import Any, Literal
 import numpy as np
 from attrs import evolve, frozen
 
-from workhold.errors import InputError, listed
+from workhold.errors import InputError, join_words
 from workhold.files.budget import LIMITS
 from workhold.files.program.interpreter import LAST_DIGIT, Interpreter
 from workhold.files.program.path import PathWriter, Place
-from workhold.files.program.subprograms import with_calls
-from workhold.files.program.tool_tables import SHAPE, commented_tools, read_tools, tool_of_fields
-from workhold.files.program.words import UNITS, VISITS, ProgramBlock, ProgramText, code_of, program_text
-from workhold.files.questions import START, worded
+from workhold.files.program.subprograms import expand_calls
+from workhold.files.program.tool_tables import (
+    SHAPE,
+    make_tool_from_fields,
+    read_tools,
+    read_tools_in_comments,
+)
+from workhold.files.program.words import (
+    UNITS,
+    VISITS,
+    ProgramBlock,
+    ProgramText,
+    normalize_code,
+    parse_program_text,
+)
+from workhold.files.questions import START, name_questions
 from workhold.files.text import read_limited
-from workhold.limits import real, refuse_long
+from workhold.limits import convert_real, refuse_long
 from workhold.model.cutting_forces import forces_on
 from workhold.model.cutting_tool import CuttingData, Tool
 from workhold.model.moves import Moves
@@ -54,7 +66,7 @@ class ReadProgram:
 
 
 def read_program(path: str | Path, tools: ToolsGiven = None, **how: Any) -> Program:
-    """Reads a program, see :meth:`workhold.model.program.Program.read`.
+    """Read a program, see :meth:`workhold.model.program.Program.read`.
 
     Parameters
     ----------
@@ -84,7 +96,7 @@ def read_program_with_calls(
     stock: Stock | Mapping[str, Any] | str | None = None,
     called: Mapping[str, str] | None = None,
 ) -> ReadProgram:
-    """Reads a program and says which tools it calls.
+    """Read a program and say which tools it calls.
 
     Parameters
     ----------
@@ -97,8 +109,11 @@ def read_program_with_calls(
         Naming the file and the line of what cannot be read.
     """
     path = Path(path)
-    height, origin = height_of(z_zero, thickness), (real(zero[0], "zero"), real(zero[1], "zero"))
-    real(clearance, "clearance")
+    height, origin = (
+        compute_height_of_zero(z_zero, thickness),
+        (convert_real(zero[0], "zero"), convert_real(zero[1], "zero")),
+    )
+    convert_real(clearance, "clearance")
     if unit is not None and unit not in ("mm", "inch"):
         raise InputError(f"the unit '{unit[:20]}' of the program is not known: give mm or inch.")
     if whole_numbers not in ("units", "thousandths"):
@@ -107,10 +122,10 @@ def read_program_with_calls(
             "one of them."
         )
     begin = None if start is None else place_of(start)
-    cut_from = Stock.of(stock, None if thickness is None else real(thickness, "thickness"))
+    cut_from = Stock.of(stock, None if thickness is None else convert_real(thickness, "thickness"))
     try:
         content = read_limited(path, LIMITS["program"])
-        listing = with_calls(program_text(decoded(content)))
+        listing = expand_calls(parse_program_text(decode_program(content)))
         control = run(
             listing,
             None if unit is None else UNITS[unit],
@@ -118,9 +133,9 @@ def read_program_with_calls(
             in_thousandths=whole_numbers == "thousandths",
         )
     except InputError as error:
-        raise InputError(f"{path}: {worded(str(error), called)}") from error
-    first = first_unit(listing, unit)
-    found, notes = tools_used(path, control, listing, tools, first)
+        raise InputError(f"{path}: {name_questions(str(error), called)}") from error
+    first = find_first_unit(listing, unit)
+    found, notes = list_tools_used(path, control, listing, tools, first)
     if begin is not None:
         notes.append("The tip starts at X{:g} Y{:g} Z{:g} mm, as given.".format(*begin))
     program = Program(
@@ -133,11 +148,11 @@ def read_program_with_calls(
         rapid=rapid,
         tools=found,
         skipped=sorted({*control.skipped, *control.path.unplaced, *control.path.nose}),
-        notes=[*notes_on(control, listing), *notes],
+        notes=[*describe_reading(control, listing), *notes],
         stock=cut_from,
     )
     # Where it runs is checked by now.
-    moves = moves_of(control, found, np.array([*program.zero, height]))
+    moves = make_moves(control, found, np.array([*program.zero, height]))
     try:
         # Beside the part no tool is known to be before the part is.
         within = find_stretches_in_stock(moves, found, cut_from, None, moves.cutting)
@@ -148,29 +163,29 @@ def read_program_with_calls(
     return ReadProgram(program, tuple(control.calls), content.count(b"\n") + 1)
 
 
-def height_of(z_zero: ZZero, thickness: float | None) -> float:
-    """The height of the program's Z0 in mm above the plane on which the part lies.
+def compute_height_of_zero(z_zero: ZZero, thickness: float | None) -> float:
+    """Return the height of the program's Z0 in mm above the plane on which the part lies.
 
     Refuses the part's top where nobody knows how high it is.
     """
     if z_zero == "bottom":
         return 0.0
     if z_zero == "top":
-        if thickness is None or not (isfinite(real(thickness, "thickness")) and thickness > 0):
+        if thickness is None or not (isfinite(convert_real(thickness, "thickness")) and thickness > 0):
             raise InputError(
                 "the program's Z0 is the top of the part, and the part's thickness is not known: give "
                 "its thickness, or z_zero as a height."
             )
-        return real(thickness)
+        return convert_real(thickness)
     other: object = z_zero
-    if isinstance(other, str) or not isfinite(height := real(other, "z_zero")):
+    if isinstance(other, str) or not isfinite(height := convert_real(other, "z_zero")):
         raise InputError("z_zero is not a height: give top, bottom, or a length above the part's lower side.")
     return height
 
 
 def place_of(start: Sequence[float]) -> Place:
-    """The place of the tip at the start in mm; refuses one that is none."""
-    values = tuple(real(value, "the start of the program") for value in start)
+    """Return the place of the tip at the start in mm; refuse one that is none."""
+    values = tuple(convert_real(value, "the start of the program") for value in start)
     if len(values) != 3 or not all(isfinite(value) for value in values):
         raise InputError("the start of the program is no place: give X, Y and Z in mm, from its own zero.")
     for value in values:
@@ -178,8 +193,8 @@ def place_of(start: Sequence[float]) -> Place:
     return values[0], values[1], values[2]
 
 
-def decoded(content: bytes) -> str:
-    """The text of a program; refuses what is no text. Comments may be in an encoding of western languages."""
+def decode_program(content: bytes) -> str:
+    """Return the text of a program; refuse what is no text. Comments may be in an encoding of western languages."""
     if b"\0" in content:
         raise InputError("the file is no text: give a program of RS-274 (G-code).")
     try:
@@ -191,11 +206,11 @@ def decoded(content: bytes) -> str:
 def run(
     listing: ProgramText, unit: Unit | None, start: Place | None = None, in_thousandths: bool = False
 ) -> Interpreter:
-    """Reads all blocks; refuses the first that cannot be read with its line, and a program that moves
-    nothing.
-    """
+    """Read all blocks; refuse the first that cannot be read with its line, and a program that moves nothing."""
     changes = any(
-        letter == "M" and code_of(text) == "6" for block in listing.blocks for letter, text in block.words
+        letter == "M" and normalize_code(text) == "6"
+        for block in listing.blocks
+        for letter, text in block.words
     )
     has_heights = any(map(gives_height, listing.blocks))
     path = PathWriter(has_heights=has_heights or start is not None)
@@ -221,44 +236,46 @@ def run(
 
 
 def gives_height(block: ProgramBlock) -> bool:
-    """Whether a block gives a height of the tip, and not one of the machine's own."""
+    """Return whether a block gives a height of the tip, and not one of the machine's own."""
     return any(letter == "Z" for letter, _ in block.words) and not any(
-        letter == "G" and code_of(text) in VISITS for letter, text in block.words
+        letter == "G" and normalize_code(text) in VISITS for letter, text in block.words
     )
 
 
 def has_length(block: ProgramBlock) -> bool:
-    """Whether a block puts the length of a tool in force; number 0 is none."""
-    if not any(letter == "G" and code_of(text) == "43" for letter, text in block.words):
+    """Return whether a block puts the length of a tool in force; number 0 is none."""
+    if not any(letter == "G" and normalize_code(text) == "43" for letter, text in block.words):
         return False
     return not any(letter == "H" and float(text) == 0.0 for letter, text in block.words)
 
 
-def first_unit(listing: ProgramText, unit: str | None) -> Unit:
-    """The unit in which a program begins, in which its comments speak of tools."""
-    codes = (code_of(text) for block in listing.blocks for letter, text in block.words if letter == "G")
+def find_first_unit(listing: ProgramText, unit: str | None) -> Unit:
+    """Return the unit in which a program begins, in which its comments speak of tools."""
+    codes = (
+        normalize_code(text) for block in listing.blocks for letter, text in block.words if letter == "G"
+    )
     return UNITS[next((code for code in codes if code in ("20", "21")), unit or "mm")]
 
 
-def moves_of(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarray[Any, Any]) -> Moves:
-    """The moves in the part's coordinates; those before any call have the only tool that is given."""
+def make_moves(control: Interpreter, tools: Mapping[int, Tool], shift: np.ndarray[Any, Any]) -> Moves:
+    """Return the moves in the part's coordinates; those before any call have the only tool that is given."""
     moves = Moves.of_rows(control.path.rows)
     tool = np.where(moves.tool < 0, min(tools), moves.tool)
     return evolve(moves, tool=tool, start=moves.start + shift, end=moves.end + shift)
 
 
-def tools_used(
+def list_tools_used(
     path: Path, control: Interpreter, listing: ProgramText, given: ToolsGiven, unit: Unit
 ) -> tuple[dict[int, Tool], list[str]]:
-    """The tools that move, with notes on what is not known of them; refuses a tool of no known diameter."""
+    """Return the tools that move, with notes on what is not known of them; refuse a tool of no known diameter."""
     notes: list[str] = []
     if given is None:
         try:
-            known = commented_tools(listing.comments, unit, control.calls)
+            known = read_tools_in_comments(listing.comments, unit, control.calls)
         except InputError as error:
             raise InputError(f"{path}: {error}") from error
     elif isinstance(given, Mapping):
-        known = {number: of_python(number, value, unit) for number, value in given.items()}
+        known = {number: make_tool_from_value(number, value, unit) for number, value in given.items()}
     else:
         known, said = read_tools(given, unit)
         if not said:
@@ -279,15 +296,15 @@ def tools_used(
         used[0] = number
     missing = sorted(set(used) - set(known))
     if missing:
-        raise InputError(f"{path}: {lacking(sorted(set(used)), missing)}")
+        raise InputError(f"{path}: {describe_missing_tools(sorted(set(used)), missing)}")
     bare = [f"T{number}" for number in sorted(set(used)) if not known[number].has_holder]
     if bare:
-        notes.append(f"The holder of {listed(bare)} is not known, so it is not checked.")
+        notes.append(f"The holder of {join_words(bare)} is not known, so it is not checked.")
     return {number: known[number] for number in sorted(set(used))}, notes
 
 
 def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) -> list[str]:
-    """Leaves rapid moves out that are made before a tool is called, or with an empty spindle (T0), and notes
+    """Leave rapid moves out that are made before a tool is called, or with an empty spindle (T0), and notes
     them.
 
     They stay where number 0 is among the tools that are known, and where the program calls no other tool.
@@ -308,34 +325,34 @@ def drop_unknown(path: Path, control: Interpreter, known: Mapping[int, Tool]) ->
     lines = {row[0] for row in early}
     control.path.rows = [row for row in rows if row[1] > 0]
     control.path.arrivals = [line for line in control.path.arrivals if line not in lines]
-    return [f"{lines_named(sorted(lines))}: a rapid move before any tool is called is left out."]
+    return [f"{format_line_numbers(sorted(lines))}: a rapid move before any tool is called is left out."]
 
 
-def of_python(number: int, value: Any, unit: Unit) -> Tool:
-    """A tool that is one, a diameter in the program's unit, or fields; refuses anything else."""
+def make_tool_from_value(number: int, value: Any, unit: Unit) -> Tool:
+    """Return a tool that is one, a diameter in the program's unit, or fields; refuse anything else."""
     if isinstance(value, Tool):
         return value
     fields = value if isinstance(value, Mapping) else {"diameter": value}
-    return tool_of_fields(int(number), fields, f"T{number}", unit)
+    return make_tool_from_fields(int(number), fields, f"T{number}", unit)
 
 
-def lacking(used: Sequence[int], missing: Sequence[int]) -> str:
+def describe_missing_tools(used: Sequence[int], missing: Sequence[int]) -> str:
     names = [f"T{number}" for number in missing]
     if used == [0]:
         called = "the program moves without calling a tool, and what is in the spindle (T0)"
     else:
-        called = f"the program calls {listed([f'T{number}' for number in used])}, and the diameter of "
-        called += listed(names)
+        called = f"the program calls {join_words([f'T{number}' for number in used])}, and the diameter of "
+        called += join_words(names)
     return (
         f"{called} is not known: give a file of tools with a line for each, such as "
         f"{SHAPE.format(number=missing[0])}."
     )
 
 
-def lines_named(lines: Sequence[int]) -> str:
-    """Lines as a list that stays short.
+def format_line_numbers(lines: Sequence[int]) -> str:
+    """Return the lines as a list that stays short.
 
-    >>> lines_named([3]), lines_named([1, 2, 3, 4, 5, 6, 7])
+    >>> format_line_numbers([3]), format_line_numbers([1, 2, 3, 4, 5, 6, 7])
     ('Line 3', 'Lines 1, 2, 3, 4, 5 and 2 more')
     """
     unlike = list(dict.fromkeys(lines))
@@ -343,38 +360,38 @@ def lines_named(lines: Sequence[int]) -> str:
         return f"Line {unlike[0]}"
     shown = [str(line) for line in unlike[:NAMED]]
     more = len(unlike) - NAMED
-    return f"Lines {listed([*shown, f'{more} more']) if more > 0 else listed(shown)}"
+    return f"Lines {join_words([*shown, f'{more} more']) if more > 0 else join_words(shown)}"
 
 
-def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
-    """What of the reading a user has to know, in sentences."""
+def describe_reading(control: Interpreter, listing: ProgramText) -> list[str]:
+    """Return what of the reading a user has to know, in sentences."""
     notes = []
     if control.path.arrivals:
         notes.append(
-            f"{lines_named(control.path.arrivals)}: the tool comes from a place that the program does not "
+            f"{format_line_numbers(control.path.arrivals)}: the tool comes from a place that the program does not "
             "say, and only where it arrives counts."
         )
     if control.skipped:
         notes.append(
-            f"{lines_named(control.skipped)}: a move to a place of the machine's own (G28, G30, G53, $H) is left "
+            f"{format_line_numbers(control.skipped)}: a move to a place of the machine's own (G28, G30, G53, $H) is left "
             "out."
         )
     if control.path.unplaced:
         notes.append(
-            f"{lines_named(control.path.unplaced)}: a rapid move in increments (G91) begins at a place that "
+            f"{format_line_numbers(control.path.unplaced)}: a rapid move in increments (G91) begins at a place that "
             "the program does not say, and is left out."
         )
     path = control.path
     if path.nose:
         notes.append(
-            f"{lines_named(path.nose)}: after G49 a height is that of the spindle's nose and not of the tip, and "
+            f"{format_line_numbers(path.nose)}: after G49 a height is that of the spindle's nose and not of the tip, and "
             "the move is left out."
         )
     said = {*control.skipped, *path.unplaced, *path.nose}
     adrift = [line for line in path.adrift if line not in said]
     if adrift:
         notes.append(
-            f"{lines_named(adrift)}: a rapid move while X, Y or Z is not known is left out; the axes "
+            f"{format_line_numbers(adrift)}: a rapid move while X, Y or Z is not known is left out; the axes "
             "that it names are known from then on."
         )
     if not control.distance_said:
@@ -382,45 +399,55 @@ def notes_on(control: Interpreter, listing: ProgramText) -> list[str]:
     if not control.changes and control.calls:
         notes.append("The program has no M6; T alone is read as the change to that tool.")
     if control.other_lengths:
-        notes.append(f"{lines_named(control.other_lengths)}: G43 takes the length of another tool.")
+        notes.append(f"{format_line_numbers(control.other_lengths)}: G43 takes the length of another tool.")
     if path.unpecked:
         notes.append(
-            f"{lines_named(path.unpecked)}: peck drilling has no depth of a peck (Q); the hole is the same, and "
+            f"{format_line_numbers(path.unpecked)}: peck drilling has no depth of a peck (Q); the hole is the same, and "
             "some controls refuse it."
         )
     if listing.asked:
         notes.append(
-            f"{lines_named(listing.asked)}: a question to the control ($ or ?) is passed over, as it moves nothing."
+            f"{format_line_numbers(listing.asked)}: a question to the control ($ or ?) is passed over, as it moves nothing."
         )
     if listing.optional:
-        notes.append(f"{lines_named(listing.optional)}: a line that a switch can leave out (/) is read.")
+        notes.append(
+            f"{format_line_numbers(listing.optional)}: a line that a switch can leave out (/) is read."
+        )
     unfed = [row[0] for row in control.path.rows if row[2] and row[6] <= 0.0]
     if unfed:
-        notes.append(f"{lines_named(unfed)}: a cutting move has no feed, and its time is not counted.")
+        notes.append(
+            f"{format_line_numbers(unfed)}: a cutting move has no feed, and its time is not counted."
+        )
     if control.presets:
         notes.append(
-            f"{lines_named(control.presets)}: G92 says where the tip stands from the program's zero."
+            f"{format_line_numbers(control.presets)}: G92 says where the tip stands from the program's zero."
         )
     if control.angles:
-        axes = listed([f"{letter} at {angle:g}" for letter, angle in sorted(control.angles.items())])
+        axes = join_words([f"{letter} at {angle:g}" for letter, angle in sorted(control.angles.items())])
         notes.append(f"A fourth axis stays where it is all through ({axes}), and turns nothing.")
     if control.passed:
         lines = sorted({line for lines in control.passed.values() for line in lines})
-        codes = listed(sorted(control.passed, key=lambda code: (code[0], float(code[1:]))))
+        codes = join_words(sorted(control.passed, key=lambda code: (code[0], float(code[1:]))))
         are, they = ("is", "it tells") if len(control.passed) == 1 else ("are", "they tell")
-        notes.append(f"{lines_named(lines)}: {codes} {are} passed over, as {they} nothing of the path.")
-    notes += whole_notes(control)
+        notes.append(
+            f"{format_line_numbers(lines)}: {codes} {are} passed over, as {they} nothing of the path."
+        )
+    notes += describe_whole_program(control)
     if listing.behind:
-        notes.append(f"{lines_named(listing.behind)}: the lines behind the end of the program are not read.")
+        notes.append(
+            f"{format_line_numbers(listing.behind)}: the lines behind the end of the program are not read."
+        )
     return notes
 
 
-def whole_notes(control: Interpreter) -> list[str]:
+def describe_whole_program(control: Interpreter) -> list[str]:
     unit = control.modes.unit
     if not control.whole or unit is None:
         return []
     digit = f"{LAST_DIGIT[unit.name]:g} {unit.name}"
-    what = f"{lines_named(control.whole)}: lengths without a decimal point, where others have one, are"
+    what = (
+        f"{format_line_numbers(control.whole)}: lengths without a decimal point, where others have one, are"
+    )
     if not control.pointed:
         what = "No length of the program has a decimal point; they are"
     if control.in_thousandths:

@@ -16,9 +16,16 @@ from attrs import define, evolve
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
-from workhold.files.program.words import CALLS, RETURN, SWITCHED_END, ProgramBlock, ProgramText, code_of
+from workhold.files.program.words import (
+    CALLS,
+    RETURN,
+    SWITCHED_END,
+    ProgramBlock,
+    ProgramText,
+    normalize_code,
+)
 
-__all__ = ["with_calls"]
+__all__ = ["expand_calls"]
 
 # Calls within calls; controls take from 4 to 10.
 MOST_CALLS = 10
@@ -51,8 +58,8 @@ class Running:
         return InputError(f"{self.call} a subprogram without an end: write M99 behind its last block.")
 
 
-def with_calls(listing: ProgramText) -> ProgramText:
-    """The text with its subprograms written out where they are called; one without calls as it is.
+def expand_calls(listing: ProgramText) -> ProgramText:
+    """Return the text with its subprograms written out where they are called; one without calls as it is.
 
     Refuses a call of what is not in the file, a subprogram without an end, and an M99 that ends none.
     """
@@ -68,9 +75,9 @@ def with_calls(listing: ProgramText) -> ProgramText:
 
 
 def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[ProgramBlock]:
-    """Yields blocks as they run, without calls and M99, up to the program's end."""
+    """Yield blocks as they run, without calls and M99, up to the program's end."""
     running: list[Running] = []
-    starts = starts_of(blocks)
+    starts = find_subprogram_starts(blocks)
     budget, index = Budget(LIMITS["program"]), 0
     while index < len(blocks):
         block = blocks[index]
@@ -89,7 +96,7 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
                         f"subprograms call each other more than {MOST_CALLS} deep: post the program with its moves "
                         "written out."
                     )
-                yield from block_beside(block)
+                yield from remove_call_from_block(block)
                 running.append(call)
                 index = call.begin
                 continue
@@ -103,7 +110,7 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
             refuse_return(block, bool(running), block.line in optional)
         except InputError as error:
             raise InputError(f"line {block.line}: {error}") from error
-        yield from block_beside(block)
+        yield from remove_call_from_block(block)
         last = running[-1]
         last.left -= 1
         index = last.begin if last.left else last.back
@@ -114,7 +121,7 @@ def run_blocks(blocks: Sequence[ProgramBlock], optional: set[int]) -> Iterator[P
 
 
 def begin_call(blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlock, back: int) -> Running:
-    """The subprogram that a block calls.
+    """Return the subprogram that a block calls.
 
     Refuses one that is not in the file, or there twice, and words that the block cannot have.
     """
@@ -153,8 +160,8 @@ def begin_call(blocks: Sequence[ProgramBlock], starts: Starts, block: ProgramBlo
     return Running(found[0], back, int(repeats), call, blocks[found[0]].program)
 
 
-def starts_of(blocks: Sequence[ProgramBlock]) -> Starts:
-    """Indices of the blocks at which subprograms begin, by the letter and the number that calls name."""
+def find_subprogram_starts(blocks: Sequence[ProgramBlock]) -> Starts:
+    """Return the indices of the blocks at which subprograms begin, by the letter and the number that calls name."""
     starts: Starts = {}
     before: int | None = None
     for index, block in enumerate(blocks):
@@ -167,7 +174,7 @@ def starts_of(blocks: Sequence[ProgramBlock]) -> Starts:
 
 
 def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> None:
-    """Refuses an M99 that does not simply lead back behind the call."""
+    """Refuse an M99 that does not simply lead back behind the call."""
     if not is_called:
         raise InputError("M99 stands outside of a subprogram, where the program begins anew: write M30.")
     if is_optional:
@@ -178,13 +185,14 @@ def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> No
         raise InputError("M99 with P goes on at another block: post the program with its moves written out.")
 
 
-def block_beside(block: ProgramBlock) -> Iterator[ProgramBlock]:
-    """The block without its call or M99, if anything is left of it."""
+def remove_call_from_block(block: ProgramBlock) -> Iterator[ProgramBlock]:
+    """Yield the block without its call or M99, if anything is left of it."""
     is_call = bool(block.functions & CALLS.keys())
     words = [
         (letter, text)
         for letter, text in block.words
-        if not (letter == "M" and code_of(text) in {*CALLS, RETURN}) and not (is_call and letter in OF_CALLS)
+        if not (letter == "M" and normalize_code(text) in {*CALLS, RETURN})
+        and not (is_call and letter in OF_CALLS)
     ]
     if words:
         yield evolve(block, words=words)

@@ -27,13 +27,13 @@ from typing import Any
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
-from workhold.files.tables import SAVED, table_of
-from workhold.files.text import read_text, toml_table
+from workhold.files.tables import SAVED, read_table
+from workhold.files.text import parse_toml, read_text
 from workhold.limits import read_number
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
-from workhold.units import Unit, unit_named
+from workhold.units import Unit, find_unit
 
-__all__ = ["FIELDS", "SHAPE", "commented_tools", "read_tools", "tool_of_fields"]
+__all__ = ["FIELDS", "SHAPE", "read_tools_in_comments", "read_tools", "make_tool_from_fields"]
 
 LENGTHS = ("diameter", "flute_length", "shank_diameter", "stickout", "holder_diameter", "holder_length")
 # How it cuts; flutes are teeth. A corner or a point is inside the flat end as which every tool is taken.
@@ -74,8 +74,8 @@ COMPENSATED = re.compile(
 )
 
 
-def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Unit) -> Tool:
-    """A tool as a flute, a shank above it and a holder.
+def make_tool_from_fields(number: int, fields: Mapping[str, Any], place: str, unit: Unit) -> Tool:
+    """Return a tool as a flute, a shank above it and a holder.
 
     Parameters
     ----------
@@ -92,34 +92,34 @@ def tool_of_fields(number: int, fields: Mapping[str, Any], place: str, unit: Uni
     --------
     >>> from workhold.units import MILLIMETRE
     >>> fields = {"diameter": 10, "stickout": 40, "holder_diameter": 40, "holder_length": 50}
-    >>> [(one.low, one.high, one.radius) for one in tool_of_fields(1, fields, "T1", MILLIMETRE).cylinders]
+    >>> [(one.low, one.high, one.radius) for one in make_tool_from_fields(1, fields, "T1", MILLIMETRE).cylinders]
     [(0.0, 40.0, 5.0), (40.0, 90.0, 20.0)]
     """
     for key in fields:
         if key not in FIELDS:
             raise InputError(f"{place} has an unknown key '{str(key)[:40]}': give {', '.join(FIELDS)}.")
-    unit = unit if fields.get("unit") is None else unit_named(str(fields["unit"]))
+    unit = unit if fields.get("unit") is None else find_unit(str(fields["unit"]))
     lengths = {}
     for key in LENGTHS:
         if fields.get(key) is not None:
             value = read_number(fields[key])
             if isinstance(fields[key], bool) or not (isfinite(value) and value > 0):
                 raise InputError(f"{place}: {key} is not a length above 0: give a number.")
-            lengths[key] = unit.length(value)
+            lengths[key] = unit.to_mm(value)
     if "diameter" not in lengths:
         raise InputError(f"{place} has no diameter: give one.")
     try:
-        cutting = cutting_of(fields, unit)
+        cutting = make_cutting_data(fields, unit)
         name = str(fields.get("name") or "")
         flute, kind = lengths.get("flute_length"), str(fields.get("type") or "")
-        cylinders, has_holder = stack(lengths, place), "holder_diameter" in lengths
+        cylinders, has_holder = stack_cylinders(lengths, place), "holder_diameter" in lengths
         return Tool(number, cylinders, lengths["diameter"], name, cutting, flute, kind, has_holder)
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(place) else f"{place}: {error}") from error
 
 
-def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
-    """How a tool cuts, from its fields; lengths are in the unit given.
+def make_cutting_data(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
+    """Return how a tool cuts, from its fields; lengths are in the unit given.
 
     A table that was written for another program may say of flutes and of a point what cannot be used here.
     That is refused only where it is the force that is asked for.
@@ -129,7 +129,7 @@ def cutting_of(fields: Mapping[str, Any], unit: Unit) -> CuttingData:
         given.setdefault("teeth", fields["flutes"])
     for key in given.keys() - WORDS:
         number = read_number(given[key])
-        given[key] = unit.length(number) if key in ("cut_depth", "cut_width") else number
+        given[key] = unit.to_mm(number) if key in ("cut_depth", "cut_width") else number
     if not given.keys() & {"cutting_force", "power", "material"}:
         given = {key: value for key, value in given.items() if key not in UNSURE or is_usable(key, value)}
     return CuttingData(**given)
@@ -143,8 +143,8 @@ def is_usable(key: str, value: Any) -> bool:
     return True
 
 
-def stack(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
-    """The cylinders of a tool from its lengths in mm; refuses a shank or a holder whose place is not said."""
+def stack_cylinders(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
+    """Return the cylinders of a tool from its lengths in mm; refuse a shank or a holder whose place is not said."""
     flute, reach = lengths.get("flute_length"), lengths.get("stickout")
     radius, shank = lengths["diameter"] / 2, lengths.get("shank_diameter")
     top = ENDLESS if reach is None else reach
@@ -167,7 +167,7 @@ def stack(lengths: Mapping[str, float], place: str) -> list[Cylinder]:
 
 
 def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Reads a table of tools.
+    """Read a table of tools.
 
     Parameters
     ----------
@@ -189,16 +189,16 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
         text = read_text(path, LIMITS["tools"], SAVED)
         ending = path.suffix.lower()
         if ending == ".toml":
-            return of_toml(toml_table(text), unit)
+            return read_toml_tools(parse_toml(text), unit)
         if ending != ".csv" and is_linuxcnc(text):
-            return of_linuxcnc(text, unit), False
-        return of_csv(text, unit)
+            return read_linuxcnc_tools(text, unit), False
+        return read_csv_tools(text, unit)
     except InputError as error:
         raise InputError(f"{path} is not a table of tools: {error}") from error
 
 
-def described(text: str) -> tuple[int | None, dict[str, str]] | None:
-    """The tool that a comment describes and its fields, None for its number where it is the one in use."""
+def parse_tool_comment(text: str) -> tuple[int | None, dict[str, str]] | None:
+    """Return the tool that a comment describes and its fields, None for its number where it is the one in use."""
     if match := COMMENT.match(text):
         before, after = match[2].strip(" -"), match[4].rpartition(" - ")[2].strip()
         return int(match[1]), {"diameter": match[3], "name": before or ("" if "=" in after else after)}
@@ -210,8 +210,8 @@ def described(text: str) -> tuple[int | None, dict[str, str]] | None:
     return None
 
 
-def checked_number(text: Any, place: str) -> int:
-    """The number of a tool; refuses anything but a whole number from 0."""
+def read_tool_number(text: Any, place: str) -> int:
+    """Return the number of a tool; refuse anything but a whole number from 0."""
     word = str(text).strip()
     word = word[1:] if word[:1] in ("T", "t") else word
     if not (word.isascii() and word.isdigit() and len(word) <= 6):
@@ -221,14 +221,14 @@ def checked_number(text: Any, place: str) -> int:
     return int(word)
 
 
-def collected(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) -> dict[int, Tool]:
-    """Tools of rows of number, fields and place; refuses a tool that is given twice, and none."""
+def collect_tools(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) -> dict[int, Tool]:
+    """Return the tools of rows of number, fields and place; refuse a tool that is given twice, and none."""
     tools: dict[int, Tool] = {}
     budget = Budget(LIMITS["tools"])
     for number, fields, place in rows:
         if number in tools:
             raise InputError(f"T{number} is given twice: leave one of them out.")
-        tools[number] = tool_of_fields(number, fields, place, unit)
+        tools[number] = make_tool_from_fields(number, fields, place, unit)
         budget.spend()
     if not tools:
         raise InputError(
@@ -237,53 +237,56 @@ def collected(rows: Iterable[tuple[int, Mapping[str, Any], str]], unit: Unit) ->
     return tools
 
 
-def of_toml(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Tools of TOML, and whether it says the unit of each; refuses another form."""
+def read_toml_tools(content: Mapping[str, Any], unit: Unit) -> tuple[dict[int, Tool], bool]:
+    """Return the tools of TOML, and whether it says the unit of each; refuse another form."""
     for key in content:
         if key not in ("unit", "tool"):
             raise InputError(
                 f"the key '{key[:40]}' is not known: give unit, and a table [tool.3] for tool 3."
             )
     said = "unit" in content
-    unit = unit_named(str(content["unit"])) if said else unit
+    unit = find_unit(str(content["unit"])) if said else unit
     tables = content.get("tool", {})
     if not isinstance(tables, dict) or not all(isinstance(one, dict) for one in tables.values()):
         raise InputError(f"its tools are no tables: write a line for each, such as {SHAPE.format(number=1)}.")
-    rows = [(checked_number(key, "tool"), fields, f"tool.{key}") for key, fields in tables.items()]
-    return collected(rows, unit), said or all("unit" in one for one in tables.values())
+    rows = [(read_tool_number(key, "tool"), fields, f"tool.{key}") for key, fields in tables.items()]
+    return collect_tools(rows, unit), said or all("unit" in one for one in tables.values())
 
 
-def of_csv(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
-    """Tools of a table with a head, separated by commas, semicolons or tabs; refuses another form."""
+def read_csv_tools(text: str, unit: Unit) -> tuple[dict[int, Tool], bool]:
+    """Return the tools of a table with a head, separated by commas, semicolons or tabs; refuse another form."""
     known = ("tool", *FIELDS)
     wanted = f"write tool,diameter and others of {', '.join(known)}"
     if not text.strip():
         raise InputError(f"its first line names no columns: {wanted}.")
-    table = table_of(text, Budget(LIMITS["tools"], len(text)), remarks="#")
+    table = read_table(text, Budget(LIMITS["tools"], len(text)), remarks="#")
     table.names = tuple(name.replace(" ", "_") for name in table.names)
     if "tool" not in table.names or not {*table.names} <= {"", *known}:
         raise InputError(f"its first line names no columns: {wanted}.")
     rows = []
-    for row in table.rows():
+    for row in table.iterate_rows():
         # A cell in which nothing is given is none; of a name only an empty one.
-        cells = {name: cell if name == "name" else row.value(name) for name, cell in row.cells.items()}
+        cells = {
+            name: cell if name == "name" else row.read_number_cell(name) for name, cell in row.cells.items()
+        }
         fields = {name: cell for name, cell in cells.items() if cell is not None}
-        number = checked_number(fields.pop("tool", ""), f"{row}:")
+        number = read_tool_number(fields.pop("tool", ""), f"{row}:")
         rows.append((number, fields, f"{row}, T{number}"))
-    return collected(rows, unit), all("unit" in fields for _, fields, _ in rows)
+    return collect_tools(rows, unit), all("unit" in fields for _, fields, _ in rows)
 
 
 def is_linuxcnc(text: str) -> bool:
-    """Whether the first line that is no remark is words of letters and numbers, or begins with a tool's
-    number."""
+    """Return whether the first line that is no remark is words of letters and numbers, or begins with a
+    tool's number.
+    """
     codes = (line.partition(";")[0].strip() for line in text.splitlines())
     code = next((code for code in codes if code), "")
     letters = [letter.upper() for letter, _ in LINUXCNC_WORD.findall(code)]
     return letters[:1] == ["T"] or ("T" in letters and not LINUXCNC_WORD.sub("", code).strip())
 
 
-def of_linuxcnc(text: str, unit: Unit) -> dict[int, Tool]:
-    """Tools of LinuxCNC's table, without those that have no diameter; refuses a line of another form."""
+def read_linuxcnc_tools(text: str, unit: Unit) -> dict[int, Tool]:
+    """Return the tools of LinuxCNC's table, without those that have no diameter; refuse a line of another form."""
     rows = []
     for place, line in enumerate(text.splitlines(), 1):
         code, _, remark = line.partition(";")
@@ -295,15 +298,15 @@ def of_linuxcnc(text: str, unit: Unit) -> dict[int, Tool]:
                 f"line {place} is not one of LinuxCNC's: write T1 P1 D10 Z50 and a remark after ;."
             )
         if float(words.get("D", 0.0)) > 0.0:
-            number = checked_number(words["T"].removeprefix("+"), f"line {place}:")
+            number = read_tool_number(words["T"].removeprefix("+"), f"line {place}:")
             rows.append((number, {"diameter": float(words["D"]), "name": remark.strip()}, f"T{number}"))
-    return collected(rows, unit)
+    return collect_tools(rows, unit)
 
 
-def commented_tools(
+def read_tools_in_comments(
     comments: Iterable[tuple[int, str]], unit: Unit, calls: Sequence[tuple[int, int]] = ()
 ) -> dict[int, Tool]:
-    """Tools that a program describes in its comments, with a diameter in the program's unit.
+    """Return the tools that a program describes in its comments, with a diameter in the program's unit.
 
     Parameters
     ----------
@@ -319,20 +322,20 @@ def commented_tools(
     Examples
     --------
     >>> from workhold.units import INCH
-    >>> found = commented_tools([(3, "T4 D=0.5 CR=0. - ZMIN=-0.25 - flat end mill")], INCH)
+    >>> found = read_tools_in_comments([(3, "T4 D=0.5 CR=0. - ZMIN=-0.25 - flat end mill")], INCH)
     >>> found[4].diameter, found[4].name
     (12.7, 'flat end mill')
     """
     tools: dict[int, Tool] = {}
     for line, text in comments:
-        found = described(text)
+        found = parse_tool_comment(text)
         if found is None or not float(found[1]["diameter"]) > 0.0:
             continue
         place = f"line {line}"
         number = found[0]
         if number is None:
             number = next((one for called, one in reversed(calls) if called <= line), 0)
-        tool = tool_of_fields(number, found[1], place, unit)
+        tool = make_tool_from_fields(number, found[1], place, unit)
         if number in tools and tools[number].diameter != tool.diameter:
             raise InputError(
                 f"{place}: the comments give T{number} two diameters: correct them, or give tools."

@@ -20,7 +20,7 @@ from typing import NoReturn
 
 from attrs import define, field, frozen
 
-from workhold.errors import InputError, plain
+from workhold.errors import InputError, make_printable
 from workhold.units import INCH, MILLIMETRE, Unit
 
 __all__ = [
@@ -40,9 +40,9 @@ __all__ = [
     "Modes",
     "ProgramBlock",
     "ProgramText",
-    "code_of",
+    "normalize_code",
     "is_spline",
-    "program_text",
+    "parse_program_text",
     "refuse_code",
     "refuse_function",
 ]
@@ -174,31 +174,31 @@ LONGEST = 2000
 
 
 @cache
-def code_of(text: str) -> str:
-    """The number of a code without zeros that say nothing.
+def normalize_code(text: str) -> str:
+    """Return the number of a code without zeros that say nothing.
 
     Examples
     --------
-    >>> code_of("01"), code_of("91.1"), code_of("28.")
+    >>> normalize_code("01"), normalize_code("91.1"), normalize_code("28.")
     ('1', '91.1', '28')
     """
     return f"{float(text):.10g}"
 
 
 def refuse_code(code: str) -> NoReturn:
-    """Refuses a code of letter G with its reason, whatever it is."""
+    """Refuse a code of letter G with its reason, whatever it is."""
     reason = REASONS.get(code, "is not known: take it out, or write the moves that it makes")
     raise InputError(f"G{code} {reason}.")
 
 
 def refuse_function(code: str) -> None:
-    """Refuses a code of letter M that does more than switch something."""
+    """Refuse a code of letter M that does more than switch something."""
     if code in FUNCTION_REASONS:
         raise InputError(f"M{code} {FUNCTION_REASONS[code]}.")
 
 
 def is_spline(code: str, letters: Set[str], turns: float) -> bool:
-    """Whether G5 or G5.1 is a curve of its own, and not a word of how a control looks ahead.
+    """Return whether G5 or G5.1 is a curve of its own, and not a word of how a control looks ahead.
 
     The letters are those of its block. ``turns`` is P, which calls a stored path from 10001 on; 0 where there
     is none.
@@ -298,8 +298,8 @@ class ProgramText:
     behind: list[int] = field(repr=False)
 
 
-def program_text(text: str) -> ProgramText:
-    """Reads a program's text into blocks, until M2, M30 or a second percent sign ends it.
+def parse_program_text(text: str) -> ProgramText:
+    """Read a program's text into blocks, until M2, M30 or a second percent sign ends it.
 
     Where a subprogram is called, it may stand behind M30, up to the percent sign.
     """
@@ -307,12 +307,12 @@ def program_text(text: str) -> ProgramText:
     began = ended = is_closed = calls = False
     program: int | None = None
     program_line: int | None = None
-    for line, content in numbered(text):
+    for line, content in number_lines(text):
         if ended:
             if content.strip() not in ("", "%"):
                 found.behind.append(line)
             continue
-        written = without_comments(line, content, found.comments)
+        written = strip_comments(line, content, found.comments)
         code = written.translate(CAPITALS)
         bare = code.strip()
         if not bare:
@@ -338,14 +338,14 @@ def program_text(text: str) -> ProgramText:
             if PROGRAM_NUMBER.fullmatch(code):
                 program, program_line = int(code.strip(" \tO:")), line
                 continue
-            raise InputError(f"line {line}: {refusal(code, written[len(written) - len(code) :])}")
+            raise InputError(f"line {line}: {explain_refusal(code, written[len(written) - len(code) :])}")
         words = WORD.findall(code)
         number = None
         if words and words[0][0] == "N":
             number = float(words.pop(0)[1])
         functions = NO_FUNCTION
         if "M" in code:
-            functions = frozenset(code_of(text) for letter, text in words if letter == "M")
+            functions = frozenset(normalize_code(text) for letter, text in words if letter == "M")
         calls = calls or bool(functions & CALLS.keys())
         ended = bool(functions & ENDS) and not calls
         if words or number is not None:
@@ -355,13 +355,14 @@ def program_text(text: str) -> ProgramText:
     return found
 
 
-def numbered(text: str) -> Iterator[tuple[int, str]]:
-    """The lines of a text, counted as editors do."""
+def number_lines(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the lines of a text, counted as editors do."""
     return enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1)
 
 
-def without_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
-    """A line without its comments, which are added to a list; refuses a parenthesis without its partner.
+def strip_comments(line: int, content: str, comments: list[tuple[int, str]]) -> str:
+    """Return a line without its comments, which are added to a list; refuse a parenthesis without its
+    partner.
 
     Of a comment within another one control ends the outer one at the first parenthesis, another at the last.
     Where nothing stands between the two, all read the same words.
@@ -385,14 +386,14 @@ def without_comments(line: int, content: str, comments: list[tuple[int, str]]) -
     return code
 
 
-def refusal(code: str, written: str) -> str:
-    """Why a line is not a block, and what helps.
+def explain_refusal(code: str, written: str) -> str:
+    """Return why a line is not a block, and what helps.
 
     ``code`` is the line in capitals, ``written`` as it stands in the file.
     """
     if code.lstrip().startswith("$"):
         return (
-            f"'{excerpt(written)}' speaks to the control itself, and may set how far it moves: take it out, and "
+            f"'{shorten_excerpt(written)}' speaks to the control itself, and may set how far it moves: take it out, and "
             "send it before the program."
         )
     if HEIDENHAIN.match(code):
@@ -407,12 +408,12 @@ def refusal(code: str, written: str) -> str:
         )
     if MACRO.search(code):
         return (
-            f"'{excerpt(written)}' reckons with variables or names, or calls a subprogram: post the program "
+            f"'{shorten_excerpt(written)}' reckons with variables or names, or calls a subprogram: post the program "
             "with its moves written out, and tools as numbers."
         )
     found = BLOCK.match(code)
     place = 0 if found is None else found.end()
-    letter, rest = code[place : place + 1], excerpt(written[place:])
+    letter, rest = code[place : place + 1], shorten_excerpt(written[place:])
     if letter in "*%/":
         return f"'{rest}' cannot stand within a line: take it out."
     if letter.isascii() and letter.isalpha():
@@ -420,6 +421,6 @@ def refusal(code: str, written: str) -> str:
     return f"'{rest}' is not a word: write letters with numbers, and remarks in parentheses."
 
 
-def excerpt(text: str) -> str:
-    shown = plain(text.strip())
+def shorten_excerpt(text: str) -> str:
+    shown = make_printable(text.strip())
     return shown if len(shown) <= SHOWN else shown[: SHOWN - 3] + "..."

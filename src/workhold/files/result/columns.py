@@ -18,25 +18,25 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
-from workhold.archive import ArchiveWriter, mapped_archive
+from workhold.archive import ArchiveWriter, map_archive
 from workhold.errors import InputError
-from workhold.files.atomic import binary_file, plain_errors
+from workhold.files.atomic import explain_system_errors, write_binary_file
 from workhold.files.replacing import refuse_other_ending, refuse_output
-from workhold.files.result.fixture_forms import checked_seating, seatings_of, with_seating
-from workhold.files.result.fixture_text import as_written, significant
+from workhold.files.result.fixture_forms import add_seatings, check_seating, read_head_seatings
+from workhold.files.result.fixture_text import round_table_for_file, round_to_twelve_digits
 from workhold.files.result.parts import (
     HEAD,
     PINS_KNOWN,
-    checked_head,
-    checked_query,
-    columns_of,
-    columns_said,
-    head_value,
+    check_head,
+    check_query,
+    describe_columns,
+    describe_columns_from_head,
+    make_result_from_counts,
+    parse_head,
     refuse_faulty,
     refuse_unknown_types,
-    result_with,
 )
-from workhold.files.result.writer import FORMAT, head, head_texts
+from workhold.files.result.writer import FORMAT, make_head, write_head_json
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import BEFORE_PINS, FIGURES
 from workhold.model.query import Query
@@ -60,32 +60,32 @@ class ColumnsSink:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Writes a result and its fixtures, so many unless somebody asks to stop."""
+        """Write a result and its fixtures, so many unless somebody asks to stop."""
         counts = Counter[str]()
         bends = result.query.knows_heights
         figures = len(FIGURES) if bends else BEFORE_PINS
-        columns = columns_of(result.toolkit.travels, result.query.program is not None, figures)
-        with binary_file(self.path) as stream:
+        columns = describe_columns(result.toolkit.travels, result.query.program is not None, figures)
+        with write_binary_file(self.path) as stream:
             archive = ArchiveWriter(stream, columns, listed)
             for table in tables:
-                counts.update(result.toolkit.arrangements_counted(table.arrangement))
+                counts.update(result.toolkit.count_arrangements(table.arrangement))
                 table = table.with_figures(columns["quality"].shape[0])
                 for start in range(0, len(table), BLOCK):
-                    archive.add(written_columns(table.take(slice(start, start + BLOCK))))
+                    archive.add(round_columns_for_file(table.take(slice(start, start + BLOCK))))
             if archive.done < listed:
                 result = result.cut_short(archive.done)
-            text = head(result, with_pieces=False)
+            text = make_head(result, with_pieces=False)
             if bends:
                 text[PINS_KNOWN] = True
             text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
                 text["seatings"] = [one.as_fields() for one in result.seating]
-            parts = head_texts(text, result.query.program, ", ", is_ascii=False)
+            parts = write_head_json(text, result.query.program, ", ", is_ascii=False)
             archive.close(HEAD, "".join(parts) + "}", FORMAT)
 
 
 def refuse_holds(query: Query, path: str | Path) -> None:
-    """Refuses what flat jaws hold, which has no pegs to stand in columns."""
+    """Refuse what flat jaws hold, which has no pegs to stand in columns."""
     if isinstance(query, Query) and query.toolkit.flat_jaws is not None:
         raise InputError(
             f"{path}: a file in columns is of pegs, and a {query.toolkit.noun} has none: let the name end in .json or .csv."
@@ -93,7 +93,7 @@ def refuse_holds(query: Query, path: str | Path) -> None:
 
 
 def write_columns(result: Result, path: str | Path) -> None:
-    """Writes a result file in columns; an earlier file of that name is replaced only when all went well."""
+    """Write a result file in columns; an earlier file of that name is replaced only when all went well."""
     refuse_holds(result.query, path)
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 
@@ -108,7 +108,7 @@ def answer_to_file(
     cancel: Event | None = None,
     preview: Callable[[Result], None] | None = None,
 ) -> Result:
-    """Finds every fixture that a query asks for, however many, and writes them in columns.
+    """Find every fixture that a query asks for, however many, and write them in columns.
 
     No more than some 100 MB of fixtures are in memory at a time. What is being sorted is kept beside the
     file, in files without a name, and takes up to twice its size.
@@ -136,7 +136,7 @@ def answer_to_file(
     refuse_holds(query, path)
     refuse_other_ending(path, [".npz"], "a result file in columns")
     refuse_output(path, force=overwrite)
-    with plain_errors(path):
+    with explain_system_errors(path):
         answer(
             query,
             sink=ColumnsSink(path),
@@ -148,10 +148,12 @@ def answer_to_file(
     return read_columns(path)
 
 
-def written_columns(table: FixtureTable) -> tuple[NDArray[Any], ...]:
-    """The columns of a table, rounded as the JSON form writes them."""
-    _, read = as_written(table)
-    *columns, pairs = evolve(read, force=significant(table.force), quality=significant(table.quality)).columns
+def round_columns_for_file(table: FixtureTable) -> tuple[NDArray[Any], ...]:
+    """Return the columns of a table, rounded as the JSON form writes them."""
+    _, read = round_table_for_file(table)
+    *columns, pairs = evolve(
+        read, force=round_to_twelve_digits(table.force), quality=round_to_twelve_digits(table.quality)
+    ).columns
     return (*columns, pairs) if table.force.ndim == 3 else tuple(columns)
 
 
@@ -176,17 +178,17 @@ class MappedTable(FixtureTable):
 
 
 def read_columns(path: Path) -> Result:
-    """The result of a file in columns, of which only the head and the fixtures' types are read yet."""
-    text, columns = mapped_archive(path, columns_said, HEAD)
+    """Return the result of a file in columns, of which only the head and the fixtures' types are read yet."""
+    text, columns = map_archive(path, describe_columns_from_head, HEAD)
     try:
-        data = head_value(text)
+        data = parse_head(text)
     except InputError as error:
         raise InputError(f"{path} is not a result file: {error}") from error
-    head = checked_head(data, path)
-    query = checked_query(head, path)
+    head = check_head(data, path)
+    query = check_query(head, path)
     refuse_unknown_types(columns["arrangement"], query.toolkit, path)
-    result = result_with(MappedTable(**columns, query=query, path=path), head, query, path)
-    seatings = seatings_of(data, path)
+    result = make_result_from_counts(MappedTable(**columns, query=query, path=path), head, query, path)
+    seatings = read_head_seatings(data, path)
     if len(seatings) > len(result):
         raise InputError(
             f"{path}: the seating of {len(seatings)} fixtures is stated, but {len(result)} are listed."
@@ -194,7 +196,7 @@ def read_columns(path: Path) -> Result:
     # The pose decides which of the seats is the fixture's own.
     poses = [result[place].pose for place in range(len(seatings))]
     seating = [
-        checked_seating(one, pose, path, k)
+        check_seating(one, pose, path, k)
         for k, (one, pose) in enumerate(zip(seatings, poses, strict=True), 1)
     ]
-    return with_seating(result, seating, path)
+    return add_seatings(result, seating, path)

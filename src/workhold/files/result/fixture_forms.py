@@ -15,7 +15,7 @@ from attrs import evolve
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from workhold.errors import InputError
-from workhold.files.result.forms import FormPart, Head, Pair, first_fault
+from workhold.files.result.forms import FormPart, Head, Pair, describe_first_fault
 from workhold.files.result.holds import HoldPart
 from workhold.model.pose import Pose
 from workhold.model.quality import SEATING_FIGURES
@@ -26,10 +26,10 @@ __all__ = [
     "FixturePart",
     "ResultFile",
     "SeatingPart",
-    "checked_seating",
-    "seating_figures_of",
-    "seatings_of",
-    "with_seating",
+    "check_seating",
+    "collect_seating_figures",
+    "read_head_seatings",
+    "add_seatings",
 ]
 
 SeatingPair = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -124,8 +124,8 @@ class SeatingPart(SeatingKeys):
     unsettled: list[str]
 
 
-def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
-    """The seating of a fixture, counted from 1, in a pose.
+def check_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
+    """Return the seating of a fixture, counted from 1, in a pose.
 
     Raises
     ------
@@ -135,15 +135,15 @@ def checked_seating(data: Any, pose: Pose, path: Path, number: int) -> Seating:
     try:
         part = SeatingPart.model_validate(data)
     except ValidationError as error:
-        key, reason = first_fault(error)
+        key, reason = describe_first_fault(error)
         key = ".".join(filter(None, ("seating", key)))
         raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     # What the form lets be left out has its default there.
     return Seating.of_fields(part.model_dump(by_alias=True), pose)
 
 
-def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Result:
-    """A result with the seating of its first fixtures.
+def add_seatings(result: Result, seating: Sequence[Seating], path: Path) -> Result:
+    """Return a result with the seating of its first fixtures.
 
     Refuses seating that was not asked for, or of more fixtures than it was asked for.
     """
@@ -156,8 +156,8 @@ def with_seating(result: Result, seating: Sequence[Seating], path: Path) -> Resu
     return evolve(result, seating=tuple(one.in_toolkit(query.toolkit, query.opening) for one in seating))
 
 
-def seating_figures_of(data: Mapping[str, Any]) -> dict[str, float]:
-    """The figures of a seating in a file of this program; infinite where it has no end."""
+def collect_seating_figures(data: Mapping[str, Any]) -> dict[str, float]:
+    """Return the figures of a seating in a file of this program; infinite where it has no end."""
     figures = {figure.key: data[figure.key] for figure in SEATING_FIGURES}
     # Without a pass it is not known how near a part must be put.
     figures["placing"] = (
@@ -166,8 +166,8 @@ def seating_figures_of(data: Mapping[str, Any]) -> dict[str, float]:
     return {key: inf if value is None else float(value) for key, value in figures.items()}
 
 
-def seatings_of(data: dict[str, Any], path: Path) -> list[Any]:
-    """The seating of the first fixtures as the head of a file in columns has it.
+def read_head_seatings(data: dict[str, Any], path: Path) -> list[Any]:
+    """Return the seating of the first fixtures as the head of a file in columns has it.
 
     Raises
     ------

@@ -25,8 +25,8 @@ import numpy as np
 from attrs import evolve, frozen
 from numpy.typing import NDArray
 
-from workhold.errors import plain
-from workhold.fixels.carrier import Carrier, column_letters
+from workhold.errors import make_printable
+from workhold.fixels.carrier import Carrier, make_column_letters
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, Arrangement
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import ratios
@@ -42,17 +42,17 @@ __all__ = [
     "ANGLE_STEPS",
     "HEADER",
     "LENGTH_STEPS",
-    "as_written",
-    "column_names",
-    "fixture_lines",
-    "fixture_rows",
-    "known_figures",
-    "pin_list",
-    "result_csv_text",
-    "rounded",
-    "rounded_degrees",
-    "seating_values",
-    "significant",
+    "round_table_for_file",
+    "list_column_names",
+    "write_fixture_lines",
+    "list_fixture_rows",
+    "list_known_figures",
+    "write_pin_list",
+    "write_result_csv",
+    "round_to_steps",
+    "round_degrees",
+    "list_seating_values",
+    "round_to_twelve_digits",
 ]
 
 LENGTH_STEPS = 1e9
@@ -62,35 +62,38 @@ ANGLE_STEPS = 1e10
 DIGITS, DOUBTFUL = 12, 1e-3
 
 
-def known_figures(table: FixtureTable) -> list[Figure]:
-    """The figures of quality that all fixtures of a table have."""
+def list_known_figures(table: FixtureTable) -> list[Figure]:
+    """Return the figures of quality that all fixtures of a table have."""
     figures = list_figures_in_columns(table.quality.shape[1])
     return [figure for number, figure in enumerate(figures) if np.isfinite(table.quality[:, number]).all()]
 
 
-def rounded(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
-    """The nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
+def round_to_steps(values: NDArray[np.floating[Any]], steps: float) -> NDArray[np.float64]:
+    """Return the nearest floats to the multiples of 1/steps nearest to the values, without negative zeros."""
     return np.rint(values.astype(np.float64) * steps) / steps + 0.0
 
 
-def rounded_degrees(degrees: Any) -> NDArray[np.float64]:
-    """Angles in degrees, a number or an array, as they are written, in [0, 360)."""
-    out = rounded(np.asarray(degrees) % 360.0, ANGLE_STEPS)
+def round_degrees(degrees: Any) -> NDArray[np.float64]:
+    """Return the angles in degrees, a number or an array, as they are written, in [0, 360)."""
+    out = round_to_steps(np.asarray(degrees) % 360.0, ANGLE_STEPS)
     return np.where(out >= 360.0, 0.0, out)
 
 
-def as_written(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
-    """Orientations (N,) in degrees as they are written, and the table as it is then read.
+def round_table_for_file(table: FixtureTable) -> tuple[NDArray[np.float64], FixtureTable]:
+    """Return the orientations (N,) in degrees as they are written, and the table as it is then read.
 
     Where pegs stand follows from the poses and travels as read, so that it is the same for the reader.
     """
-    theta = rounded_degrees(np.degrees(table.theta))
-    position, travel = (rounded(values, LENGTH_STEPS) for values in (table.position, table.jaw_separation))
+    theta = round_degrees(np.degrees(table.theta))
+    position, travel = (
+        round_to_steps(values, LENGTH_STEPS) for values in (table.position, table.jaw_separation)
+    )
     return theta, evolve(table, theta=np.radians(theta), position=position, jaw_separation=travel)
 
 
-def significant(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Floats nearest to values with twelve significant digits; NaN for infinite ones, which JSON lacks.
+def round_to_twelve_digits(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the floats nearest to values with twelve significant digits; NaN for infinite ones, which JSON
+    lacks.
 
     A whole number below 1e12 times or over an exact power of ten is rounded once, as reading the digits is.
     """
@@ -126,11 +129,17 @@ POSE = '"pose": {"theta_deg": %r, "x": %r, "y": %r}, '
 LEFT_OUT = "%.0s"
 
 
-def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], band: str) -> str:
-    """The line of a fixture with its numbers left open, in the order of :meth:`WrittenBlock.line_columns`."""
+def make_fixture_template(
+    arrangement: Arrangement, toolkit: Toolkit, figures: Sequence[Figure], band: str
+) -> str:
+    """Return the line of a fixture with its numbers left open, in the order of
+    :meth:`WrittenBlock.list_line_columns`.
+    """
     tips, travels = toolkit.tips, toolkit.travels
     carriers = [toolkit.carriers[number] for number in arrangement.carriers]
-    pegs = ", ".join(f"{{{peg_template(one, travels)}{band}}}" for one in carriers if one.contact.is_placed)
+    pegs = ", ".join(
+        f"{{{make_peg_template(one, travels)}{band}}}" for one in carriers if one.contact.is_placed
+    )
     quality = ", ".join(f'"{figure.key}": {FIGURE[travels]}' for figure in figures)
     pushed = PUSHED[tips].format(*map(json.dumps, arrangement.directions))
     forces = f"[{FORCE[travels]}, {FORCE[travels]}]"
@@ -143,8 +152,8 @@ def fixture_template(arrangement: Arrangement, toolkit: Toolkit, figures: Sequen
     )
 
 
-def peg_template(carrier: Carrier, travels: int) -> str:
-    """The form of a peg of a carrier, its numbers left open; those of a clamp's place come twice."""
+def make_peg_template(carrier: Carrier, travels: int) -> str:
+    """Return the form of a peg of a carrier, its numbers left open; those of a clamp's place come twice."""
     key, name = carrier.written_as
     contact = f'"x": %r, "y": %r, "segment": %d, "force": {FORCE[travels]}'
     if carrier.contact is not CLAMP_TIP:
@@ -155,40 +164,42 @@ def peg_template(carrier: Carrier, travels: int) -> str:
     return f'"{key}": "{name}", {direction}"hole": {hole}, {line}, {contact}'
 
 
-def fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
-    """The lines of a list of fixtures, block by block."""
-    figures = known_figures(table)
+def write_fixture_lines(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[list[str]]:
+    """Yield the lines of a list of fixtures, block by block."""
+    figures = list_known_figures(table)
     band = ', "band": %s' * (workpiece.solid is not None)
-    templates = [fixture_template(one, toolkit, figures, band) for one in toolkit.arrangements]
-    for block in blocks(table, toolkit, workpiece):
-        rows = zip(*block.line_columns(), strict=True)
+    templates = [make_fixture_template(one, toolkit, figures, band) for one in toolkit.arrangements]
+    for block in split_into_written_blocks(table, toolkit, workpiece):
+        rows = zip(*block.list_line_columns(), strict=True)
         yield [templates[k] % row for k, row in zip(block.table.arrangement.tolist(), rows, strict=True)]
 
 
-def fixture_rows(
+def list_fixture_rows(
     table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
 ) -> Iterator[tuple[list[int], Iterator[tuple[Any, ...]]]]:
-    """Blocks of fixtures as plain numbers, rounded as they are written.
+    """Yield the blocks of fixtures as plain numbers, rounded as they are written.
 
     Yields
     ------
     The indices of the arrangements, and a tuple of numbers for every fixture. It holds column, row, x, y,
     face and force of each peg (of two clamps at their working ratio). Then come theta in degrees, x and y of
-    the pose, jaw separation or each clamp's travel, and the figures of :func:`known_figures`. Where pegs
+    the pose, jaw separation or each clamp's travel, and the figures of :func:`list_known_figures`. Where pegs
     have flats, a list is last: the directions of the flats of those in holes.
     """
-    for block in blocks(table, toolkit, workpiece):
-        yield block.table.arrangement.tolist(), zip(*block.row_columns(), strict=True)
+    for block in split_into_written_blocks(table, toolkit, workpiece):
+        yield block.table.arrangement.tolist(), zip(*block.list_row_columns(), strict=True)
 
 
-def blocks(table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> Iterator[WrittenBlock]:
-    """The fixtures of a table, rounded as they are written, block by block."""
+def split_into_written_blocks(
+    table: FixtureTable, toolkit: Toolkit, workpiece: Workpiece
+) -> Iterator[WrittenBlock]:
+    """Yield the fixtures of a table, rounded as they are written, block by block."""
     figures = list_figures_in_columns(table.quality.shape[1])
-    known = [figures.index(figure) for figure in known_figures(table)]
+    known = [figures.index(figure) for figure in list_known_figures(table)]
     for start in range(0, len(table), BLOCK):
         block = table.take(slice(start, start + BLOCK))
-        theta, table_read = as_written(block)
-        x, y = (rounded(places, LENGTH_STEPS) for places in peg_places(table_read, toolkit, workpiece))
+        theta, table_read = round_table_for_file(block)
+        x, y = (round_to_steps(places, LENGTH_STEPS) for places in peg_places(table_read, toolkit, workpiece))
         yield WrittenBlock(table_read, toolkit, workpiece, theta, x, y, known)
 
 
@@ -234,8 +245,8 @@ class WrittenBlock:
         angles, placed = list_flat_angles(self.table, self.toolkit, self.workpiece), self.placed
         return [[[row[k] for k in placed] for row in angles]]
 
-    def row_columns(self) -> list[list[Any]]:
-        """The columns of :func:`fixture_rows`."""
+    def list_row_columns(self) -> list[list[Any]]:
+        """Return the columns of :func:`list_fixture_rows`."""
         table, columns = self.table, list[list[Any]]()
         for k in self.contacts:
             numbers = (table.column, table.row, self.x, self.y, table.face, table.working_force)
@@ -244,13 +255,13 @@ class WrittenBlock:
         moved = [array.tolist() for array in (*np.atleast_2d(table.jaw_separation.T), *figures)]
         return [*columns, *self.pose, *moved, *self.flats]
 
-    def line_columns(self) -> list[list[Any]]:
-        """The columns of numbers in the order in which a line has them."""
+    def list_line_columns(self) -> list[list[Any]]:
+        """Return the columns of numbers in the order in which a line has them."""
         table, toolkit, tips = self.table, self.toolkit, self.toolkit.tips
         force, quality, ratio = table.force[:, :, None], table.quality, list[list[Any]]()
         if toolkit.travels > 1:
-            force, quality = significant(table.force) + 0.0, significant(quality) + 0.0
-            low, high = (significant(ends).tolist() for ends in ratios(force))
+            force, quality = round_to_twelve_digits(table.force) + 0.0, round_to_twelve_digits(quality) + 0.0
+            low, high = (round_to_twelve_digits(ends).tolist() for ends in ratios(force))
             ratio = [low, ["null" if isnan(end) else repr(end) for end in high]]
         known, walls, pegs = self.workpiece.numbered.bands, list[NDArray[Any]](), list[NDArray[Any]]()
         bands = [np.array([json.dumps(band) for band in known], object)] if known else []
@@ -281,25 +292,25 @@ POSE_COLUMNS = ("number", "type", "theta_deg", "x", "y")
 TRAVEL_COLUMNS = {1: ("jaw_separation",), 2: ("travel_1", "travel_2")}
 
 
-def column_names(result: Result) -> list[str]:
+def list_column_names(result: Result) -> list[str]:
     toolkit = result.toolkit
     pegs = [f"peg{peg}_{name}" for peg in range(1, toolkit.peg_count + 1) for name in PEG_COLUMNS]
     moved = TRAVEL_COLUMNS[toolkit.travels]
-    figures = [figure.key for figure in known_figures(result.table)]
+    figures = [figure.key for figure in list_known_figures(result.table)]
     placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
     flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
     seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
     return [*POSE_COLUMNS, *moved, *figures, *pegs, *flats, *seating]
 
 
-def seating_values(result: Result) -> list[list[float]]:
-    """Figures of the seating of all fixtures: infinite without an end, NaN where it is not worked out."""
+def list_seating_values(result: Result) -> list[list[float]]:
+    """Return the figures of the seating of all fixtures: infinite without an end, NaN where it is not worked out."""
     known = [list(one.figures.values()) for one in result.seating]
     return known + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(known))
 
 
 def hold_csv_text(result: Result) -> Iterator[str]:
-    """The same of what flat jaws hold."""
+    """Yield the same of what flat jaws hold."""
     from workhold.files.result.hold_text import hold_columns, hold_rows
 
     lines = io.StringIO()
@@ -309,8 +320,8 @@ def hold_csv_text(result: Result) -> Iterator[str]:
     yield lines.getvalue()
 
 
-def result_csv_text(result: Result) -> Iterator[str]:
-    """The fixtures of a result as comma-separated values, piece by piece, numbered by rank from 1.
+def write_result_csv(result: Result) -> Iterator[str]:
+    """Yield the fixtures of a result as comma-separated values, piece by piece, numbered by rank from 1.
 
     Lengths are in mm, angles in degrees; column and row count from 0 and the hole's name is the one in the
     pictures.
@@ -319,11 +330,11 @@ def result_csv_text(result: Result) -> Iterator[str]:
     if toolkit.flat_jaws is not None:
         yield from hold_csv_text(result)
         return
-    yield ",".join(column_names(result)) + "\n"
+    yield ",".join(list_column_names(result)) + "\n"
     moved, flats = 3 + toolkit.travels, FLAT_PIN in toolkit.contacts
     arrangements = [(one.title, [carriers[k] for k in one.carriers]) for one in toolkit.arrangements]
-    number, seated = 0, seating_values(result) if result.seating else []
-    for kinds, rows in fixture_rows(result.table, toolkit, result.workpiece):
+    number, seated = 0, list_seating_values(result) if result.seating else []
+    for kinds, rows in list_fixture_rows(result.table, toolkit, result.workpiece):
         lines = []
         for kind, row in zip(kinds, rows, strict=True):
             number += 1
@@ -347,8 +358,10 @@ def result_csv_text(result: Result) -> Iterator[str]:
 HEADER = ("hole", "carrier", "column", "row", "x", "y", "diameter", "length", "unit", "dowel", "face")
 
 
-def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, length: float | None) -> str:
-    """A row for each pin, in the fixture's order; a clamp is none.
+def write_pin_list(
+    fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, length: float | None
+) -> str:
+    """Return a row for each pin, in the fixture's order; a clamp is none.
 
     Parameters
     ----------
@@ -366,9 +379,11 @@ def pin_list(fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, 
         carrier = carriers[peg.carrier]
         if not carrier.has_lattice:
             continue
-        sizes = (unit.number(peg.x), unit.number(peg.y), unit.figure(2 * carrier.peg_radius))
-        long = "" if length is None else unit.figure(length)
-        place = (peg.hole, plain(carrier.title), column_letters(peg.column), peg.row + 1)
+        sizes = (unit.number(peg.x), unit.number(peg.y), unit.format_short_length(2 * carrier.peg_radius))
+        long = "" if length is None else unit.format_short_length(length)
+        place = (peg.hole, make_printable(carrier.title), make_column_letters(peg.column), peg.row + 1)
         looks = ["" if peg.flat_deg is None else f"{peg.flat_deg:.4f}"] * flats
-        writer.writerow((*place, *sizes, long, unit.abbreviation, plain(dowel or ""), peg.face, *looks))
+        writer.writerow(
+            (*place, *sizes, long, unit.abbreviation, make_printable(dowel or ""), peg.face, *looks)
+        )
     return stream.getvalue()

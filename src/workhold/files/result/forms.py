@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
-from workhold.files.declared_forms import given_in, with_fields
-from workhold.files.input_forms import LONGEST_NAME, TAGS, forms_by_noun, one_of, optional
-from workhold.fixels.kinds import USUAL, table_of, toolkit_of
+from workhold.files.declared_forms import add_declared_fields, collect_given_values
+from workhold.files.input_forms import LONGEST_NAME, TAGS, join_forms, make_forms_by_noun, make_optional_entry
+from workhold.fixels.kinds import USUAL, find_table, make_toolkit
 from workhold.fixels.table import Form, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.dowels import Fit
@@ -24,17 +24,25 @@ from workhold.model.search_report import Proof, Undecided
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["MISSING", "Head", "LoadPart", "ProofPart", "RestrictionsPart", "TolerancePart", "first_fault"]
+__all__ = [
+    "MISSING",
+    "Head",
+    "LoadPart",
+    "ProofPart",
+    "RestrictionsPart",
+    "TolerancePart",
+    "describe_first_fault",
+]
 
 LONGEST_STANDARD = 40
-OF_SEARCH = declarations_of(SearchQuestion)
+OF_SEARCH = list_declarations(SearchQuestion)
 # What is wrong with a key that is not there.
 MISSING = "it is missing"
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
-def first_fault(error: ValidationError) -> tuple[str, str]:
-    """The first key of a file that is wrong, and what is wrong with it, without a capital or a full stop."""
+def describe_first_fault(error: ValidationError) -> tuple[str, str]:
+    """Return the first key of a file that is wrong, and what is wrong with it, without a capital or a full stop."""
     first = error.errors()[0]
     key = ".".join(str(part) for part in first["loc"] if part not in TAGS)
     return key, MISSING if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
@@ -45,8 +53,8 @@ class FormPart(BaseModel):
 
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
 
-    def not_given(self, place: str = "") -> Iterator[str]:
-        """The keys that the file does not give, in it and in the parts of it, such as ``vise.rows``."""
+    def list_keys_not_given(self, place: str = "") -> Iterator[str]:
+        """Yield the keys that the file does not give, in it and in the parts of it, such as ``vise.rows``."""
         for name in type(self).model_fields:
             value: Any = getattr(self, name)
             if name not in self.model_fields_set:
@@ -55,7 +63,9 @@ class FormPart(BaseModel):
             several = value if isinstance(value, list) else [value]
             for number, part in enumerate(several):
                 if isinstance(part, FormPart):
-                    yield from part.not_given(f"{place}{name}." + (f"{number}." if several is value else ""))
+                    yield from part.list_keys_not_given(
+                        f"{place}{name}." + (f"{number}." if several is value else "")
+                    )
 
 
 class WorkpiecePart(FormPart):
@@ -101,8 +111,8 @@ class SolidPart(FormPart):
     head_room: float
     least_band: float
 
-    def outline(self, workpiece: WorkpiecePart) -> SolidOutline:
-        """The solid with the bands of its outline; refuses one without bands, and heights that are none."""
+    def to_outline(self, workpiece: WorkpiecePart) -> SolidOutline:
+        """Return the solid with the bands of its outline; refuse one without bands, and heights that are none."""
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
         return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())
@@ -139,20 +149,22 @@ TYPES: Mapping[Form, Any] = {
 }
 
 
-def key_of(row: ToolkitField) -> tuple[Any, Any]:
-    return optional(TYPES[row.form], row)
+def make_form_key(row: ToolkitField) -> tuple[Any, Any]:
+    return make_optional_entry(TYPES[row.form], row)
 
 
 # The usual vise stands in a file without its kind.
-PARTS = forms_by_noun(FormPart, "{}Part", key_of, summary="{}'s keys.")
-NAMED = forms_by_noun(FormPart, "Named{}Part", key_of, lambda kinds: (str, ...), "{}'s keys, with its kind.")
+PARTS = make_forms_by_noun(FormPart, "{}Part", make_form_key, summary="{}'s keys.")
+NAMED = make_forms_by_noun(
+    FormPart, "Named{}Part", make_form_key, lambda kinds: (str, ...), "{}'s keys, with its kind."
+)
 if TYPE_CHECKING:
     from typing import TypeAlias
 
     VisePart: TypeAlias = Any
     ToolkitPart: TypeAlias = Any
 else:
-    VisePart, ToolkitPart = PARTS[table_of(USUAL).noun], one_of(NAMED)
+    VisePart, ToolkitPart = PARTS[find_table(USUAL).noun], join_forms(NAMED)
 
 
 class RestrictionsPart(FormPart):
@@ -163,7 +175,7 @@ class RestrictionsPart(FormPart):
     angles: list[Pair] = []
     touch: list[int] = []
 
-    def restrictions(self) -> Restrictions:
+    def to_restrictions(self) -> Restrictions:
         return Restrictions(self.avoid, [*map(make_zone, self.zones)], self.angles, self.touch)
 
 
@@ -189,7 +201,7 @@ class TolerancePart(FormPart):
     fit: FitPart | None = None
     departure: float = 0.0
 
-    def tolerance(self) -> Tolerance:
+    def to_tolerance(self) -> Tolerance:
         return Tolerance(self.peg, self.face, None if self.fit is None else self.fit.fit(), self.departure)
 
 
@@ -224,7 +236,7 @@ class UndecidedPart(FormPart):
     reach_deg: float | None = Field(default=None, ge=0)
     reason: str = Field(min_length=1)
 
-    def undecided(self) -> Undecided:
+    def to_undecided(self) -> Undecided:
         faces, columns, rows = (tuple(v) for v in (self.segments, self.columns, self.rows))
         return Undecided(self.type, faces, columns, rows, self.theta_deg, self.reason, self.reach_deg)
 
@@ -239,9 +251,9 @@ class ProofPart(FormPart):
     escalated: int = Field(ge=0)
     undecided: list[UndecidedPart]
 
-    def proof(self) -> Proof:
+    def to_proof(self) -> Proof:
         counts = (self.cells, self.candidates, self.discarded_by_bound, self.verified, self.escalated)
-        return Proof(*counts, tuple(item.undecided() for item in self.undecided))
+        return Proof(*counts, tuple(item.to_undecided() for item in self.undecided))
 
 
 class NotePart(FormPart):
@@ -252,7 +264,7 @@ class NotePart(FormPart):
     kind: str
 
 
-@with_fields(OF_SEARCH, bounded=False)
+@add_declared_fields(OF_SEARCH, bounded=False)
 class Head(FormPart):
     """Everything in the file but the fixtures."""
 
@@ -286,23 +298,23 @@ class Head(FormPart):
         None, description="mm, of all that is fit and without warning; from it the steps of the order count"
     )
 
-    def asked_toolkit(self) -> Toolkit:
-        """The toolkit; refuses a head that has none at all, or two."""
+    def to_toolkit(self) -> Toolkit:
+        """Return the toolkit; refuse a head that has none at all, or two."""
         if self.vise is not None and self.toolkit is not None:
             raise InputError("it has the keys vise and toolkit, of which only one can be.")
         if self.vise is not None:
-            return toolkit_of(USUAL, self.vise.model_dump())
+            return make_toolkit(USUAL, self.vise.model_dump())
         if self.toolkit is None:
             raise InputError("it is not complete: the key vise is missing.")
-        return toolkit_of(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
+        return make_toolkit(self.toolkit.kind, self.toolkit.model_dump(exclude={"kind"}))
 
-    def query(self) -> Query:
-        toolkit = self.asked_toolkit()
+    def to_query(self) -> Query:
+        toolkit = self.to_toolkit()
         workpiece = Workpiece.from_loops(
             self.workpiece.name,
             self.workpiece.loops,
             departure=self.workpiece.departure,
-            solid=None if self.solid is None else self.solid.outline(self.workpiece),
+            solid=None if self.solid is None else self.solid.to_outline(self.workpiece),
         )
         if self.outlines is not None:
             entries = {role: one.model_dump() for role, one in self.outlines.items()}
@@ -311,16 +323,16 @@ class Head(FormPart):
             workpiece,
             toolkit,
             self.types,
-            restrictions=self.restrictions.restrictions(),
+            restrictions=self.restrictions.to_restrictions(),
             rank_by=["closure_margin"] if self.ranking is None else self.ranking,
-            tolerance=None if self.tolerance is None else self.tolerance.tolerance(),
+            tolerance=None if self.tolerance is None else self.tolerance.to_tolerance(),
             loads=(part.load() for part in self.loads),
-            program=self.asked_program(),
-            **given_in(self, OF_SEARCH),
+            program=self.to_program(),
+            **collect_given_values(self, OF_SEARCH),
         )
 
-    def asked_program(self) -> Program | None:
-        """The program that fixtures are to let pass; refuses one that lacks something or cannot be."""
+    def to_program(self) -> Program | None:
+        """Return the program that fixtures are to let pass; refuse one that lacks something or cannot be."""
         if self.program is None:
             return None
         try:

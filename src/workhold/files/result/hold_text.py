@@ -15,64 +15,69 @@ from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import HOLD_FIGURES, Patch, ProgramNeed
 from workhold.model.result import Result
 
-__all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold", "need_entry"]
+__all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold", "make_need_entry"]
 
 DIGITS = 12
 
 
-def length(value: float) -> float:
-    """A length as it is written, to 1e-9 mm."""
+def round_length_for_file(value: float) -> float:
+    """Return a length as it is written, to 1e-9 mm."""
     return round(value, 9) + 0.0
 
 
-def figure(value: Any) -> Any:
-    """A figure as it is written, to twelve digits; a truth and nothing as they are."""
+def round_figure_for_file(value: Any) -> Any:
+    """Return a figure as it is written, to twelve digits; a truth and nothing as they are."""
     if isinstance(value, list):
-        return [figure(one) for one in value]
+        return [round_figure_for_file(one) for one in value]
     return value if value is None or isinstance(value, bool) else float(f"{value:.{DIGITS}g}") + 0.0
 
 
 def hold_entry(fixture: Fixture) -> dict[str, Any]:
-    """A fixture that flat jaws hold, as it is written."""
+    """Return a fixture that flat jaws hold, as it is written."""
     hold, pose = fixture.hold, fixture.pose
     assert hold is not None
 
     def patch_entry(patch: Patch) -> dict[str, Any]:
-        rectangles = [[length(end) for end in one] for one in patch.rectangles]
+        rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
         return {"segments": list(patch.segments), "rectangles": rectangles}
 
     need = hold.program_need
-    of_program = {} if need is None else {"program_force": need_entry(need)}
+    of_program = {} if need is None else {"program_force": make_need_entry(need)}
     return {
         "type": fixture.type,
-        "parallels": length(hold.parallels),
+        "parallels": round_length_for_file(hold.parallels),
         "stop": hold.stop,
         "fixed": patch_entry(hold.fixed),
         "moving": patch_entry(hold.moving),
         "pose": {
             "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
-            "x": length(pose.x),
-            "y": length(pose.y),
+            "x": round_length_for_file(pose.x),
+            "y": round_length_for_file(pose.y),
         },
-        "jaw_separation": length(hold.opening),
+        "jaw_separation": round_length_for_file(hold.opening),
         "warnings": list(hold.warnings),
-        "quality": {key: figure(value) for key, value in hold.as_quality().items()},
+        "quality": {key: round_figure_for_file(value) for key, value in hold.as_quality().items()},
         **of_program,
     }
 
 
-def need_entry(need: ProgramNeed) -> dict[str, Any]:
-    """What the tools of a program ask for, as it is written."""
-    return {"force": figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
+def make_need_entry(need: ProgramNeed) -> dict[str, Any]:
+    """Return what the tools of a program ask for, as it is written."""
+    return {
+        "force": round_figure_for_file(need.force),
+        "line": need.line,
+        "tool": need.tool,
+        "move": need.move,
+    }
 
 
 def hold_lines(result: Result) -> Iterator[str]:
-    """The lines of a result's fixtures."""
+    """Yield the lines of a result's fixtures."""
     return (json.dumps(hold_entry(fixture)) for fixture in result)
 
 
 def is_hold(fixture: Any) -> bool:
-    """Whether a fixture in a file is one of flat jaws."""
+    """Return whether a fixture in a file is one of flat jaws."""
     return isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
 
 
@@ -81,12 +86,14 @@ AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
 
 
 def hold_columns() -> list[str]:
-    """The names of the columns of :func:`hold_rows`."""
+    """Return the names of the columns of :func:`hold_rows`."""
     return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
 
 
 def hold_rows(result: Result) -> Iterator[list[Any]]:
-    """A row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+    """Yield a row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where
+    not known.
+    """
     for number, fixture in enumerate(result, 1):
         entry = hold_entry(fixture)
         pose, quality = entry["pose"], entry["quality"]

@@ -13,7 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
-from workhold.files.result.forms import FormPart, first_fault
+from workhold.files.result.forms import FormPart, describe_first_fault
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
@@ -21,7 +21,7 @@ from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.pose import Pose
 from workhold.model.query import Query
 
-__all__ = ["HoldPart", "holds_of", "read_holds", "table_of_holds"]
+__all__ = ["HoldPart", "make_jaw_holds", "read_holds", "make_table_of_holds"]
 
 LARGEST = 1e9
 Whole = Annotated[int, Field(ge=0)]
@@ -35,7 +35,7 @@ class PatchPart(FormPart):
     segments: list[Whole] = Field(description="numbers of the faces; none where corners touch")
     rectangles: list[RectanglePart] = Field(min_length=1)
 
-    def patch(self) -> Patch:
+    def to_patch(self) -> Patch:
         rows = tuple((x0, x1, z0, z1) for x0, x1, z0, z1 in self.rectangles)
         return Patch(rows, tuple(self.segments), not self.segments)
 
@@ -88,22 +88,22 @@ class HoldPart(FormPart):
     quality: HoldQualityPart
     program_force: ProgramForcePart | None = None
 
-    def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
-        """The fixture with the figures that are written."""
+    def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
+        """Return the fixture with the figures that are written."""
         pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
         written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
         return Fixture(self.type, (), pose, self.jaw_separation, written, hold=self.hold(toolkit, unit_force))
 
     def hold(self, toolkit: Toolkit, unit_force: float | None = None) -> JawHold:
-        """How the jaws of a toolkit hold the part; refuses a toolkit without flat jaws."""
+        """Return how the jaws of a toolkit hold the part; refuse a toolkit without flat jaws."""
         if toolkit.flat_jaws is None:
             raise InputError(f"it lies between flat jaws, which a {toolkit.noun} does not have.")
         quality, need = self.quality, self.program_force
         return JawHold(
             parallels=self.parallels,
             stop=self.stop,
-            fixed=self.fixed.patch(),
-            moving=self.moving.patch(),
+            fixed=self.fixed.to_patch(),
+            moving=self.moving.to_patch(),
             opening=self.jaw_separation,
             above=quality.above,
             full_contact=quality.full_contact,
@@ -117,7 +117,7 @@ class HoldPart(FormPart):
 
 
 def read_holds(fixtures: Iterable[Any], path: Path) -> list[HoldPart]:
-    """The fixtures of a file.
+    """Return the fixtures of a file.
 
     Raises
     ------
@@ -129,13 +129,13 @@ def read_holds(fixtures: Iterable[Any], path: Path) -> list[HoldPart]:
         try:
             out.append(HoldPart.model_validate(fixture))
         except ValidationError as error:
-            key, reason = first_fault(error)
+            key, reason = describe_first_fault(error)
             raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     return out
 
 
-def holds_of(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHold, ...]:
-    """How flat jaws hold the part in each fixture of a file; refuses faces that there are not."""
+def make_jaw_holds(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHold, ...]:
+    """Return how flat jaws hold the part in each fixture of a file; refuse faces that there are not."""
     faces = {face.number for face in query.workpiece.numbered.faces}
     names = query.toolkit.types
     for number, part in enumerate(parts, 1):
@@ -150,8 +150,8 @@ def holds_of(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHo
     return tuple(part.hold(query.toolkit, query.unit_force) for part in parts)
 
 
-def table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
-    """The table of the fixtures of a file."""
+def make_table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
+    """Return the table of the fixtures of a file."""
     return make_flat_jaw_table(
         [radians(part.pose.theta_deg) for part in parts],
         [(part.pose.x, part.pose.y) for part in parts],

@@ -15,7 +15,7 @@ from attrs import fields
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from workhold.errors import InputError
-from workhold.files.result.forms import Head, first_fault
+from workhold.files.result.forms import Head, describe_first_fault
 from workhold.model.notes import (
     KINDS,
     STAGES,
@@ -42,7 +42,7 @@ __all__ = ["note_faults", "read_notes"]
 
 
 def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
-    """The notes of a file, from their data, or from their sentences alone in an older file.
+    """Return the notes of a file, from their data, or from their sentences alone in an older file.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
     """
     if head.note_data is None:
         verified = 0 if head.proof is None else head.proof.verified
-        return tuple(recognised(sentence, query, verified) for sentence in head.notes)
+        return tuple(recognize_note(sentence, query, verified) for sentence in head.notes)
     if len(head.note_data) != len(head.notes):
         raise InputError(
             f"note_data has {len(head.note_data)} entries beside {len(head.notes)} notes: it needs one for "
@@ -62,24 +62,24 @@ def read_notes(head: Head, query: Query) -> tuple[Note, ...]:
 
 
 def note_faults(head: Head, notes: Sequence[Note]) -> Iterator[str]:
-    """A fault for each sentence of a head that its data would not be put into."""
+    """Yield a fault for each sentence of a head that its data would not be put into."""
     for sentence, note in zip(head.notes, notes, strict=True):
         if sentence != note.words:
             yield f'the note "{sentence[:80]}" is not what its data say, "{note.words[:80]}"'
 
 
 def note_of(sentence: str, part: BaseModel, query: Query, number: int) -> Note:
-    """The note of an entry of data; that of a kind which this program does not know is its sentence."""
+    """Return the note of an entry of data; that of a kind which this program does not know is its sentence."""
     entry = part.model_dump()
     if (kind := KINDS.get(entry["kind"])) is None:
         return Remark(sentence)
     try:
-        given = form_of(kind.kind).model_validate(entry).model_dump()
+        given = find_note_form(kind.kind).model_validate(entry).model_dump()
         note = kind(**given, **({"wording": query.toolkit.wording} if has_wording(kind) else {}))
         # It may have data that no sentence can be made of.
         str(note)
     except ValidationError as error:
-        key, reason = first_fault(error)
+        key, reason = describe_first_fault(error)
         raise InputError(f"note_data.{number}.{key} cannot be used: {reason}.") from error
     except (ValueError, LookupError) as error:
         raise InputError(f"note_data.{number} cannot be used: no note is like that.") from error
@@ -91,8 +91,8 @@ def has_wording(kind: type[Note]) -> bool:
 
 
 @cache
-def form_of(name: str) -> type[BaseModel]:
-    """The form of the data of a kind of note; further keys are allowed."""
+def find_note_form(name: str) -> type[BaseModel]:
+    """Return the form of the data of a kind of note; further keys are allowed."""
     kind = KINDS[name]
     hints = get_type_hints(kind)
     # JSON has lists for tuples.
@@ -109,15 +109,15 @@ def form_of(name: str) -> type[BaseModel]:
 NUMBER = re.compile(r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
-def recognised(sentence: str, query: Query, verified: int) -> Note:
-    """The note that a sentence says, of a result with so many verified candidates; else a remark."""
+def recognize_note(sentence: str, query: Query, verified: int) -> Note:
+    """Return the note that a sentence says, of a result with so many verified candidates; else a remark."""
     words = [word.replace(",", "") for word in NUMBER.findall(sentence)]
-    thinkable = thinkable_notes([float(word) for word in words], query, verified)
+    thinkable = list_possible_notes([float(word) for word in words], query, verified)
     return next((note for note in thinkable if note.words == sentence), Remark(sentence))
 
 
-def thinkable_notes(numbers: Sequence[float], query: Query, verified: int) -> Iterator[Note]:
-    """The notes that some numbers, in their order, and a query may make."""
+def list_possible_notes(numbers: Sequence[float], query: Query, verified: int) -> Iterator[Note]:
+    """Yield the notes that some numbers, in their order, and a query may make."""
     wording, asked = query.toolkit.wording, query.asked_of_places
     whole = [int(number) for number in numbers]
     yield PushedByHand()

@@ -19,20 +19,20 @@ from numpy.typing import NDArray
 
 from workhold.archive import is_archive
 from workhold.errors import InputError
-from workhold.files.result.fixture_forms import with_seating
+from workhold.files.result.fixture_forms import add_seatings
 from workhold.files.result.hold_text import is_hold
 from workhold.files.result.parts import (
     OtherLayoutError,
-    checked_head,
-    checked_query,
-    fixture_texts,
-    parsed,
-    plain_reading,
+    check_head,
+    check_query,
+    explain_reading_errors,
+    make_result,
+    parse_fixture_text,
     read_lines,
-    result_of,
+    split_fixture_texts,
     start_of_fixtures,
 )
-from workhold.files.result.reader import checked_table, collected, measured, read_result
+from workhold.files.result.reader import add_missing_figures, check_table, collect_columns, read_result
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.result import Result
 
@@ -60,7 +60,7 @@ class Picked:
 
 
 def read_one(path: str | Path, rank: int) -> Result:
-    """Reads a result file for the fixture of a rank; others are read and checked once they are asked for.
+    """Read a result file for the fixture of a rank; others are read and checked once they are asked for.
 
     Raises
     ------
@@ -71,24 +71,24 @@ def read_one(path: str | Path, rank: int) -> Result:
     try:
         if not path.is_file():
             raise OtherLayoutError
-        with plain_reading(path):
+        with explain_reading_errors(path):
             if is_archive(path):
                 raise OtherLayoutError
-            data, found = read_lines(path, partial(picked, rank=rank))
-            if found.texts and is_hold(parsed(found.texts[-1])):
+            data, found = read_lines(path, partial(pick_fixture, rank=rank))
+            if found.texts and is_hold(parse_fixture_text(found.texts[-1])):
                 raise OtherLayoutError
-            columns = collected(map(parsed, found.texts), path, found.first)
+            columns = collect_columns(map(parse_fixture_text, found.texts), path, found.first)
     except OtherLayoutError:
         result = read_result(path)
         refuse_missing(path, rank, len(result))
         return result
-    head = checked_head(data, path)
-    query, said = checked_query(head, path), sum(head.counts.values())
+    head = check_head(data, path)
+    query, said = check_query(head, path), sum(head.counts.values())
     if said != found.count:
         raise InputError(f"{path}: counts say {said} fixtures, but {found.count} are listed.")
     refuse_missing(path, rank, found.count)
-    rows = measured(checked_table(columns, query, path, found.first), query)
-    return with_seating(result_of(TableOfFile(rows, found, path), head, query, path), columns.seating, path)
+    rows = add_missing_figures(check_table(columns, query, path, found.first), query)
+    return add_seatings(make_result(TableOfFile(rows, found, path), head, query, path), columns.seating, path)
 
 
 def refuse_missing(path: Path, rank: int, count: int) -> None:
@@ -96,8 +96,8 @@ def refuse_missing(path: Path, rank: int, count: int) -> None:
         raise InputError(f"{path} lists {count} fixtures: there is no fixture {rank}.")
 
 
-def picked(texts: Iterable[bytes], path: Path, rank: int) -> Picked:
-    """Picks the fixture of a rank, and counts the others."""
+def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> Picked:
+    """Pick the fixture of a rank, and count the others."""
     chosen: list[bytes] = []
     number = 0
     for number, text in enumerate(texts, 1):
@@ -145,9 +145,11 @@ class TableOfFile(FixtureTable):
         is_read = len(places) > 0 and places.min() >= 0 and places.max() < len(self.read)
         return self.read.take(places) if is_read else self.whole.take(order)
 
-    def same_holes(self, index: int) -> int:
-        """How many other fixtures have their pegs in the same holes as one that is read."""
+    def count_in_same_holes(self, index: int) -> int:
+        """Return how many other fixtures have their pegs in the same holes as one that is read."""
         here = STANDING.findall(self.found.texts[index - self.found.first])
-        with plain_reading(self.path), self.path.open("rb") as stream:
+        with explain_reading_errors(self.path), self.path.open("rb") as stream:
             stream.seek(start_of_fixtures(stream))
-            return sum(STANDING.findall(text) == here for text in fixture_texts(stream, [], self.path)) - 1
+            return (
+                sum(STANDING.findall(text) == here for text in split_fixture_texts(stream, [], self.path)) - 1
+            )

@@ -32,9 +32,9 @@ from pydantic import ValidationError
 from workhold.archive import Column, Columns
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS
-from workhold.files.result.forms import MISSING, Head, ProofPart, first_fault
+from workhold.files.result.forms import MISSING, Head, ProofPart, describe_first_fault
 from workhold.files.result.notes import read_notes
-from workhold.files.text import json_value, read_limited
+from workhold.files.text import parse_json, read_limited
 from workhold.fixels.fields import CLAMPS
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable
@@ -50,21 +50,21 @@ __all__ = [
     "LARGEST_LENGTH",
     "LARGEST_NUMBER",
     "OtherLayoutError",
-    "checked_head",
-    "checked_query",
-    "columns_of",
-    "columns_said",
-    "fixture_texts",
-    "head_value",
-    "parsed",
-    "plain_reading",
+    "check_head",
+    "check_query",
+    "describe_columns",
+    "describe_columns_from_head",
+    "split_fixture_texts",
+    "parse_head",
+    "parse_fixture_text",
+    "explain_reading_errors",
     "read_lines",
     "read_parts",
     "refuse_faulty",
     "refuse_rows",
     "refuse_unknown_types",
-    "result_of",
-    "result_with",
+    "make_result",
+    "make_result_from_counts",
     "start_of_fixtures",
 ]
 
@@ -84,8 +84,8 @@ FIRST_LINE = re.compile(rb'"fixtures": \[[ \t\r]{0,99}\n')
 LONGEST_FIRST_LINE = 250
 
 
-def columns_of(travels: int, has_program: bool = False, figures: int = BEFORE_PINS) -> Columns:
-    """What each column holds (docs/columns.md), by how many things move in a fixture.
+def describe_columns(travels: int, has_program: bool = False, figures: int = BEFORE_PINS) -> Columns:
+    """Return what each column holds (docs/columns.md), by how many things move in a fixture.
 
     ``has_program`` says whether the program clearance stands behind the figures of quality, of which there
     are ``figures`` without it.
@@ -103,25 +103,25 @@ def columns_of(travels: int, has_program: bool = False, figures: int = BEFORE_PI
     }
 
 
-def without_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
-    """Entries as they are, but for those of a swept piece, which are many."""
+def drop_swept_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the entries as they are, but for those of a swept piece, which are many."""
     return None if entries.keys() == PIECE_KEYS else entries
 
 
-def columns_said(head: str) -> Columns:
-    """What the columns hold beside a head, which may be of any kind of file."""
+def describe_columns_from_head(head: str) -> Columns:
+    """Return what the columns hold beside a head, which may be of any kind of file."""
     try:
-        said = json.loads(head, object_hook=without_piece)
+        said = json.loads(head, object_hook=drop_swept_piece)
         toolkit = said.get("toolkit")
         travels = 2 if toolkit is not None and toolkit.get(CLAMPS.name) == 2 else 1
         figures = len(FIGURES) if said.get(PINS_KNOWN) else BEFORE_PINS
-        return columns_of(travels, said.get("program") is not None, figures)
+        return describe_columns(travels, said.get("program") is not None, figures)
     except (ValueError, AttributeError, RecursionError):
-        return columns_of(1)
+        return describe_columns(1)
 
 
-def piece_or_entries(entries: dict[str, Any]) -> Any:
-    """A swept piece packed, where entries are those of one; all others as they are."""
+def pack_swept_piece(entries: dict[str, Any]) -> Any:
+    """Return a swept piece packed, where entries are those of one; all others as they are."""
     if entries.keys() != PIECE_KEYS:
         return entries
     try:
@@ -131,13 +131,13 @@ def piece_or_entries(entries: dict[str, Any]) -> Any:
         return entries
 
 
-def head_value(text: str) -> Any:
-    """The content of a head's JSON, its swept pieces packed."""
-    return json_value(text, piece_or_entries)
+def parse_head(text: str) -> Any:
+    """Return the content of a head's JSON, its swept pieces packed."""
+    return parse_json(text, pack_swept_piece)
 
 
 def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit, path: Path) -> None:
-    """Refuses indices (N,) of arrangements that a toolkit does not have."""
+    """Refuse indices (N,) of arrangements that a toolkit does not have."""
     names = [one.title for one in toolkit.arrangements]
     if arrangement.min(initial=0) < 0 or arrangement.max(initial=0) >= len(names):
         number = int(np.argmax((arrangement < 0) | (arrangement >= len(names)))) + 1
@@ -145,7 +145,7 @@ def refuse_unknown_types(arrangement: NDArray[np.integer[Any]], toolkit: Toolkit
 
 
 def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequence[int]) -> None:
-    """Refuses fixtures (N,), or (N, P) by their pegs, of which one is faulty.
+    """Refuse fixtures (N,), or (N, P) by their pegs, of which one is faulty.
 
     ``places`` are where in the file they stand, from 0.
     """
@@ -155,7 +155,7 @@ def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequ
 
 
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
-    """Refuses fixtures of known types that contradict the toolkit, the workpiece or themselves.
+    """Refuse fixtures of known types that contradict the toolkit, the workpiece or themselves.
 
     ``places`` are where in the file they stand, from 0.
     """
@@ -164,7 +164,7 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
     toolkit, refuse = query.toolkit, partial(refuse_rows, path=path, places=places)
     asked = [number for number, one in enumerate(toolkit.arrangements) if one.name in query.types]
     refuse(~np.isin(table.arrangement, asked), "is of a type that was not asked for")
-    jaw = toolkit.peg_carriers(table.arrangement)
+    jaw = toolkit.find_peg_carriers(table.arrangement)
     for number, carrier in enumerate(toolkit.carriers):
         for what, places_on, most in (
             ("column", table.column, carrier.columns),
@@ -184,20 +184,20 @@ def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequenc
     refuse((table.pairs < 1) | (table.pairs > LARGEST_NUMBER), "stands for no pair of clamps")
 
 
-def checked_head(data: Any, path: Path) -> Head:
+def check_head(data: Any, path: Path) -> Head:
     try:
         return Head.model_validate(data)
     except ValidationError as error:
-        key, reason = first_fault(error)
+        key, reason = describe_first_fault(error)
         if reason == MISSING:
             raise InputError(f"{path} is not a complete result file: the key {key} is missing.") from error
         raise InputError(f"{path}: {key or 'the head'} cannot be used: {reason}.") from error
 
 
-def checked_query(head: Head, path: Path) -> Query:
-    """What was asked; refuses what cannot be, and counts of other types."""
+def check_query(head: Head, path: Path) -> Query:
+    """Return what was asked; refuse what cannot be, and counts of other types."""
     try:
-        query = head.query()
+        query = head.to_query()
     except InputError as error:
         raise InputError(f"{path}: {error}") from error
     names = query.toolkit.types
@@ -209,17 +209,17 @@ def checked_query(head: Head, path: Path) -> Query:
     return query
 
 
-def result_with(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """The result of a head and a table; refuses counts that are not those of the table."""
-    for name, listed in query.toolkit.arrangements_counted(table.arrangement).items():
+def make_result_from_counts(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
+    """Return the result of a head and a table; refuse counts that are not those of the table."""
+    for name, listed in query.toolkit.count_arrangements(table.arrangement).items():
         if head.counts[name] != listed:
             said = head.counts[name]
             raise InputError(f"{path}: counts say {said} fixtures of type {name}, but {listed} are listed.")
-    return result_of(table, head, query, path)
+    return make_result(table, head, query, path)
 
 
-def result_of(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
-    """The result of a head and a table; refuses notes and an account of the search that cannot be."""
+def make_result(table: FixtureTable, head: Head, query: Query, path: Path) -> Result:
+    """Return the result of a head and a table; refuse notes and an account of the search that cannot be."""
     try:
         notes = read_notes(head, query)
     except InputError as error:
@@ -232,15 +232,15 @@ def result_of(table: FixtureTable, head: Head, query: Query, path: Path) -> Resu
         complete=head.complete,
         notes=notes,
         statistics=head.statistics,
-        proof=None if head.proof is None else checked_proof(head.proof, query, path),
+        proof=None if head.proof is None else check_proof(head.proof, query, path),
         pairs=head.pairs,
         seats=head.seats,
         least_effective_error=head.least_effective_error,
     )
 
 
-def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
-    """The account of the search.
+def check_proof(part: ProofPart, query: Query, path: Path) -> Proof:
+    """Return the account of the search.
 
     Refuses counts that do not add up, and an undecided candidate that names an unknown type or a segment that
     is no face.
@@ -270,7 +270,7 @@ def checked_proof(part: ProofPart, query: Query, path: Path) -> Proof:
             raise InputError(
                 f"{path}: undecided candidate {number} of the proof names a segment that is no face."
             )
-    return part.proof()
+    return part.to_proof()
 
 
 Taken = TypeVar("Taken")
@@ -282,7 +282,7 @@ class OtherLayoutError(Exception):
 
 
 def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
-    """Head and fixtures of a result file.
+    """Return the head and fixtures of a result file.
 
     Parameters
     ----------
@@ -294,17 +294,17 @@ def read_parts(path: Path, take: Take[Taken]) -> tuple[Head, Taken]:
     InputError
         When the file cannot be read, or is no result file, and what ``take`` raises.
     """
-    with plain_reading(path):
+    with explain_reading_errors(path):
         try:
-            data, taken = read_lines(path, lambda texts, path: take(map(parsed, texts), path))
+            data, taken = read_lines(path, lambda texts, path: take(map(parse_fixture_text, texts), path))
         except OtherLayoutError:
             data, taken = read_whole(path, take)
-    return checked_head(data, path), taken
+    return check_head(data, path), taken
 
 
 @contextmanager
-def plain_reading(path: Path) -> Iterator[None]:
-    """Says in a sentence why a file cannot be read in the block as the text of a result."""
+def explain_reading_errors(path: Path) -> Iterator[None]:
+    """Say in a sentence why a file cannot be read in the block as the text of a result."""
     try:
         if path.exists() and not path.is_file():
             raise InputError(f"{path} is not a file: give a result file.")
@@ -318,7 +318,7 @@ def plain_reading(path: Path) -> Iterator[None]:
 
 
 def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
-    """Head and fixtures of a file with one fixture per line; ``take`` is given their texts.
+    """Return the head and fixtures of a file with one fixture per line; ``take`` is given their texts.
 
     Raises OtherLayoutError when the lines are not of that form. Refuses a line, or what stands around the
     fixtures, that is longer than any may be.
@@ -326,7 +326,7 @@ def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     with path.open("rb") as stream:
         before = stream.read(start_of_fixtures(stream))
         after: list[bytes] = []
-        taken = take(fixture_texts(stream, after, path), path)
+        taken = take(split_fixture_texts(stream, after, path), path)
         rest = stream.read(MOST_AROUND - len(before) + 1)
         if len(before) + len(rest) > MOST_AROUND:
             raise InputError(
@@ -336,14 +336,14 @@ def read_lines(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
         text = b"".join((before.removeprefix(BOM_UTF8), *after, rest)).decode()
         del before, rest
         try:
-            data = head_value(text)
+            data = parse_head(text)
         except ValueError as error:
             raise OtherLayoutError from error
     return data, taken
 
 
 def start_of_fixtures(stream: BinaryIO) -> int:
-    """How many bytes stand before the first fixture; the stream is at its start before and after.
+    """Return how many bytes stand before the first fixture; the stream is at its start before and after.
 
     Nothing is kept of what is read: a file of any size may be none.
     """
@@ -359,8 +359,8 @@ def start_of_fixtures(stream: BinaryIO) -> int:
     raise OtherLayoutError
 
 
-def fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[bytes]:
-    """The fixtures on their lines, as text; the line that ends the list goes to ``after``."""
+def split_fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[bytes]:
+    """Yield the fixtures on their lines, as text; the line that ends the list goes to ``after``."""
     last = False
     for number in count(1):
         line = stream.readline(MOST_LINE + 1)
@@ -379,10 +379,10 @@ def fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Iterator[
         yield text if last else text[:-1]
 
 
-def parsed(text: bytes) -> Any:
-    """The fixture of a line; raises OtherLayoutError where that is none by itself."""
+def parse_fixture_text(text: bytes) -> Any:
+    """Return the fixture of a line; raise OtherLayoutError where that is none by itself."""
     try:
-        return json_value(text.decode())
+        return parse_json(text.decode())
     except UnicodeDecodeError:
         raise
     except ValueError as error:
@@ -397,7 +397,7 @@ def read_whole(path: Path, take: Take[Taken]) -> tuple[Any, Taken]:
     if not text.strip():
         raise InputError(f"{path} is empty: it is not a result file.")
     try:
-        data = head_value(text)
+        data = parse_head(text)
     except InputError as error:
         raise InputError(f"{path} is not a result file: {error}") from error
     if not isinstance(data, dict) or not isinstance(data.get("fixtures"), list):

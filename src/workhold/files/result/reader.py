@@ -21,18 +21,18 @@ from workhold.archive import is_archive
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
-from workhold.files.result.fixture_forms import checked_seating, with_seating
+from workhold.files.result.fixture_forms import add_seatings, check_seating
 from workhold.files.result.hold_text import is_hold
-from workhold.files.result.holds import HoldPart, holds_of, read_holds, table_of_holds
+from workhold.files.result.holds import HoldPart, make_jaw_holds, make_table_of_holds, read_holds
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,
-    checked_query,
+    check_query,
+    make_result_from_counts,
     read_parts,
     refuse_faulty,
     refuse_rows,
     refuse_unknown_types,
-    result_with,
 )
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
@@ -50,7 +50,7 @@ from workhold.model.result import Result
 from workhold.model.seating import Seating
 from workhold.model.wall_ends import wall_ends
 
-__all__ = ["Columns", "checked_table", "collected", "measured", "read_result"]
+__all__ = ["Columns", "check_table", "collect_columns", "add_missing_figures", "read_result"]
 
 BLOCK = 4096
 
@@ -79,7 +79,7 @@ class Columns:
 
 
 def read_result(path: str | Path) -> Result:
-    """Reads a result file in JSON or in columns.
+    """Read a result file in JSON or in columns.
 
     Parameters
     ----------
@@ -96,30 +96,33 @@ def read_result(path: str | Path) -> Result:
             return read_columns(path)
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    head, columns = read_parts(path, collected_of_any_kind)
-    query = checked_query(head, path)
+    head, columns = read_parts(path, collect_any_fixtures)
+    query = check_query(head, path)
     if isinstance(columns, list) != (query.toolkit.flat_jaws is not None):
         if isinstance(columns, list) or len(columns.types):
             raise InputError(f"{path}: its fixtures are not those of a {query.toolkit.noun}.")
         columns = []
     if isinstance(columns, list):
         return evolve(
-            result_with(table_of_holds(columns), head, query, path), holds=holds_of(columns, query, path)
+            make_result_from_counts(make_table_of_holds(columns), head, query, path),
+            holds=make_jaw_holds(columns, query, path),
         )
-    result = result_with(measured(checked_table(columns, query, path), query), head, query, path)
-    return with_seating(result, columns.seating, path)
+    result = make_result_from_counts(
+        add_missing_figures(check_table(columns, query, path), query), head, query, path
+    )
+    return add_seatings(result, columns.seating, path)
 
 
-def collected_of_any_kind(fixtures: Iterable[Any], path: Path) -> Columns | list[HoldPart]:
-    """Fixtures as arrays; such as flat jaws hold as they are."""
+def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> Columns | list[HoldPart]:
+    """Return the fixtures as arrays; such as flat jaws hold as they are."""
     iterator = iter(fixtures)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
-    return read_holds(together, path) if first and is_hold(first[0]) else collected(together, path)
+    return read_holds(together, path) if first and is_hold(first[0]) else collect_columns(together, path)
 
 
-def collected(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
-    """Fixtures as arrays; the ``first`` of them stands in that place in the file, from 0."""
+def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
+    """Return the fixtures as arrays; the ``first`` of them stands in that place in the file, from 0."""
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
     number, pegs, seating = first + 1, 0, list[Seating]()
@@ -127,7 +130,7 @@ def collected(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
         rows = []
         for fixture in islice(iterator, BLOCK):
             try:
-                rows.append(fixture_row(fixture))
+                rows.append(make_fixture_row(fixture))
             except KeyError as error:
                 raise InputError(f"{path}: fixture {number} has no key {error}.") from error
             except (TypeError, ValueError, AttributeError) as error:
@@ -138,7 +141,7 @@ def collected(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
                         f"{path}: fixture {number} has its seating stated, but not the one before it."
                     )
                 theta, x, y, *_ = rows[-1][4]
-                seating.append(checked_seating(fixture["seating"], Pose(theta, x, y), path, number))
+                seating.append(check_seating(fixture["seating"], Pose(theta, x, y), path, number))
             number += 1
         kinds = (np.str_, np.str_, np.int32, np.float64, np.float64, np.float64)
         pegs = pegs or (len(rows[0][1]) if rows else 4)
@@ -155,22 +158,22 @@ def collected(fixtures: Iterable[Any], path: Path, first: int = 0) -> Columns:
             return Columns(types, jaws, holes, contacts, placing, quality, tuple(seating))
 
 
-def fixture_row(
+def make_fixture_row(
     fixture: Any,
 ) -> tuple[str, list[str], list[list[int]], list[list[float]], list[float], list[float]]:
-    """The numbers of one fixture, for one row of each array of :class:`Columns`."""
+    """Return the numbers of one fixture, for one row of each array of :class:`Columns`."""
     name = fixture["type"]
     pegs, pose = fixture["pegs"], fixture["pose"]
     if "wall" in fixture and isinstance(pegs, list):
-        pegs = wall_pegs(fixture["wall"]) + pegs
-    directions = directions_of(fixture)
+        pegs = read_wall_pegs(fixture["wall"]) + pegs
+    directions = read_clamp_directions(fixture)
     several = len(directions) > 1
     if not isinstance(pegs, list) or len(pegs) != (5 if several else 4):
         raise ValueError(f"it does not have {'five' if several else 'four'} pegs")
     name = " ".join((name, *directions))
     jaws, holes = [], []
     for peg in pegs:
-        carrier, column, row = peg_place(peg, peg.get("direction") if several else "".join(directions))
+        carrier, column, row = read_peg_place(peg, peg.get("direction") if several else "".join(directions))
         jaws.append(carrier)
         holes.append([column, row, peg["segment"]])
     if not all(isinstance(word, str) for word in (fixture["type"], *jaws)):
@@ -197,15 +200,15 @@ def fixture_row(
     return name, jaws, holes, contacts, placing, [figures.get(figure.key, np.nan) for figure in every]
 
 
-def directions_of(fixture: Any) -> list[str]:
-    """The directions in which the clamps of a fixture push; none where no clamp holds the part."""
+def read_clamp_directions(fixture: Any) -> list[str]:
+    """Return the directions in which the clamps of a fixture push; none where no clamp holds the part."""
     if fixture.get("directions") is not None:
         return [*fixture["directions"]]
     return [] if fixture.get("direction") is None else [str(fixture["direction"])]
 
 
-def wall_pegs(wall: Any) -> list[Any]:
-    """The two ends of the contact with a wall as pegs; what touches there follows from the pose."""
+def read_wall_pegs(wall: Any) -> list[Any]:
+    """Return the two ends of the contact with a wall as pegs; what touches there follows from the pose."""
     places, forces = (wall["from"], wall["to"]), wall["forces"]
     if [len(values) for values in (*places, forces)] != [2, 2, 2]:
         raise ValueError("its wall does not have two places of two numbers and two forces")
@@ -215,8 +218,8 @@ def wall_pegs(wall: Any) -> list[Any]:
     ]
 
 
-def peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
-    """The carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole lacks."""
+def read_peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
+    """Return the carrier of a peg, and the column and row of its hole; 0 for what a clamp without a hole lacks."""
     if "role" not in peg:
         return peg["jaw"], peg["column"], peg["row"]
     if peg["role"] == WALL:
@@ -238,16 +241,16 @@ def peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
     return f"clamp {direction}", places["column"], places["row"]
 
 
-def indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
-    """The place of each word among some names; -1 for a word that is none of them."""
+def find_indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
+    """Return the place of each word among some names; -1 for a word that is none of them."""
     out = np.full(words.shape, -1, np.int8)
     for index, name in enumerate(names):
         out[words == name] = index
     return out
 
 
-def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) -> FixtureTable:
-    """The table of the fixtures, pegs in the order of their arrangements; the ``first`` has that place."""
+def check_table(columns: Columns, query: Query, path: Path, first: int = 0) -> FixtureTable:
+    """Return the table of the fixtures, pegs in the order of their arrangements; the ``first`` has that place."""
     toolkit = query.toolkit
     if len(columns.types) == 0:
         return FixtureTable.empty(toolkit)
@@ -259,7 +262,7 @@ def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) ->
         [one.title for one in toolkit.arrangements],
         [one.name for one in toolkit.carriers],
     )
-    arrangement, jaw = indices(columns.types, arrangements), indices(columns.jaws, carriers)
+    arrangement, jaw = find_indices(columns.types, arrangements), find_indices(columns.jaws, carriers)
     order = np.argsort(jaw, axis=1, kind="stable")
     jaw = np.take_along_axis(jaw, order, axis=1)
     hole = np.take_along_axis(columns.holes, order[:, :, None], axis=1)
@@ -267,7 +270,7 @@ def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) ->
     column, row, face = (np.ascontiguousarray(hole[:, :, k]) for k in range(3))
     theta_deg, x, y, separation, pairs = columns.placing.T
     for ends in toolkit.ends_on_walls:
-        face[:, ends] = faces_on_wall(query, np.radians(theta_deg), np.stack([x, y], axis=1), path)
+        face[:, ends] = find_faces_on_wall(query, np.radians(theta_deg), np.stack([x, y], axis=1), path)
     tips = range(toolkit.peg_count - toolkit.tips, toolkit.peg_count)
     strokes = [clamp_travel(toolkit, jaw[:, k], hole[:, k], contact[:, k]) for k in tips]
     travels, force = strokes or [separation], contact[:, :, 2 : 2 + toolkit.travels]
@@ -282,7 +285,7 @@ def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) ->
         position=np.stack([x, y], axis=1),
         jaw_separation=np.stack(travels, axis=1)[:, alone].copy(),
         force=np.ascontiguousarray(force[:, :, alone]),
-        quality=columns.quality[:, figures_asked(query)],
+        quality=columns.quality[:, find_asked_figures(query)],
         pairs=pairs.astype(np.int32),
     )
 
@@ -290,7 +293,7 @@ def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) ->
     refuse = partial(refuse_rows, path=path, places=rows)
     refuse_unknown_types(arrangement, toolkit, path)
     refuse(jaw < 0, f"cannot be used: a peg's jaw is not {' or '.join(carriers)}")
-    refuse(jaw != toolkit.peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
+    refuse(jaw != toolkit.find_peg_carriers(arrangement), "does not have the pegs of its type on each jaw")
     refuse_faulty(table, query, path, rows)
     hole_x, hole_y = peg_places(table, toolkit, query.workpiece)
     apart = np.hypot(contact[:, :, 0] - hole_x, contact[:, :, 1] - hole_y) > AGREEMENT
@@ -298,10 +301,11 @@ def checked_table(columns: Columns, query: Query, path: Path, first: int = 0) ->
     return table
 
 
-def faces_on_wall(
+def find_faces_on_wall(
     query: Query, theta: NDArray[np.float64], position: NDArray[np.float64], path: Path
 ) -> NDArray[np.int64]:
-    """The faces (N, 2) at the ends of the contact with a wall, in poses (N,) in radians and (N, 2) in mm.
+    """Return the faces (N, 2) at the ends of the contact with a wall, in poses (N,) in radians and (N, 2) in
+    mm.
 
     Refuses a workpiece that cannot lie flush on a wall, where there are fixtures.
     """
@@ -314,7 +318,7 @@ def faces_on_wall(
 def clamp_travel(
     toolkit: Toolkit, numbers: NDArray[Any], hole: NDArray[np.int32], tip: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Travels (N,) in mm of clamps on carriers (N,), from their holes to their tips, both (N, 2 or more)."""
+    """Return the travels (N,) in mm of clamps on carriers (N,), from their holes to their tips, both (N, 2 or more)."""
     out = np.zeros(len(tip))
     for number, carrier in enumerate(toolkit.carriers):
         if carrier.travel is None:
@@ -325,14 +329,14 @@ def clamp_travel(
     return out
 
 
-def figures_asked(query: Query) -> list[int]:
-    """The places of the figures of a query among all, see ``model.quality.list_figures_in_columns``."""
+def find_asked_figures(query: Query) -> list[int]:
+    """Return the places of the figures of a query among all, see ``model.quality.list_figures_in_columns``."""
     known = len(FIGURES) if query.knows_heights else BEFORE_PINS
     return [*range(known), *([len(FIGURES)] if query.program is not None else [])]
 
 
-def measured(table: FixtureTable, query: Query) -> FixtureTable:
-    """The table with the figures of quality that the file does not give."""
+def add_missing_figures(table: FixtureTable, query: Query) -> FixtureTable:
+    """Return the table with the figures of quality that the file does not give."""
     wanted = np.isnan(table.quality)
     if not query.is_loaded:
         wanted[:, [LOAD_REACTION, JAW_FORCE_NEEDED]] = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from workhold.errors import InputError, refuse_kind
-from workhold.files.atomic import text_file
+from workhold.files.atomic import write_text_file
 from workhold.files.replacing import refuse_other_ending, refuse_output
 from workhold.model.result import Result
 
@@ -15,7 +15,7 @@ FORMS = ("json", "csv", "npz")
 
 
 def save(result: Result, path: str | Path, form: str | None = None, *, overwrite: bool = False) -> None:
-    """Writes a result file; an earlier one of that name is replaced only when all went well.
+    """Write a result file; an earlier one of that name is replaced only when all went well.
 
     Angles are rounded to 1e-10 degrees and lengths to 1e-9 mm, so a result that is opened again differs from the
     one saved in the last digits.
@@ -44,10 +44,10 @@ def save(result: Result, path: str | Path, form: str | None = None, *, overwrite
 
         write_result(result, path)
     elif form == "csv":
-        from workhold.files.result.fixture_text import result_csv_text
+        from workhold.files.result.fixture_text import write_result_csv
 
-        with text_file(path) as stream:
-            stream.writelines(result_csv_text(result))
+        with write_text_file(path) as stream:
+            stream.writelines(write_result_csv(result))
     else:
         from workhold.files.result.columns import write_columns
 

@@ -18,10 +18,10 @@ from typing import Any
 
 from attrs import asdict
 
-from workhold.asking.declaring import declarations_of
+from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SearchQuestion
-from workhold.files.atomic import text_file
-from workhold.files.result.fixture_text import as_written, fixture_lines, rounded_degrees
+from workhold.files.atomic import write_text_file
+from workhold.files.result.fixture_text import round_degrees, round_table_for_file, write_fixture_lines
 from workhold.files.result.hold_text import hold_lines
 from workhold.fixels.carrier import Holes
 from workhold.fixels.kinds import USUAL
@@ -42,18 +42,18 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "FORMAT",
-    "asked_entry",
-    "head",
-    "head_texts",
+    "make_query_entry",
+    "make_head",
+    "write_head_json",
     "load_entry",
-    "program_text",
-    "proof_entry",
-    "result_text",
-    "solid_entry",
-    "toolkit_fields",
-    "workpiece_entry",
+    "write_program_json",
+    "make_proof_entry",
+    "write_result_text",
+    "make_solid_entry",
+    "make_toolkit_fields",
+    "make_workpiece_entry",
     "write_result",
-    "written",
+    "convert_to_json_value",
 ]
 
 FORMAT = "workhold-result/1"
@@ -64,38 +64,39 @@ AT_ONCE = 2000
 
 
 def write_result(result: Result, path: str | Path) -> None:
-    """Writes a result file (MODEL, "Result file"), whole or not at all."""
-    with text_file(path) as stream:
-        stream.writelines(result_text(result))
+    """Write a result file (MODEL, "Result file"), whole or not at all."""
+    with write_text_file(path) as stream:
+        stream.writelines(write_result_text(result))
 
 
-def result_text(result: Result) -> Iterator[str]:
-    """The text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
-    yield from head_texts(head(result, with_pieces=False), result.query.program, ",\n")
+def write_result_text(result: Result) -> Iterator[str]:
+    """Yield the text of a result file, piece by piece; in ASCII, so that no name in it steers a terminal."""
+    yield from write_head_json(make_head(result, with_pieces=False), result.query.program, ",\n")
     yield ',\n"fixtures": ['
     separator, count = "\n", 0
     if result.toolkit.flat_jaws is not None:
         yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(hold_lines(result)))
         yield "\n]}\n"
         return
-    for lines in fixture_lines(result.table, result.toolkit, result.workpiece):
+    for lines in write_fixture_lines(result.table, result.toolkit, result.workpiece):
         seatings = result.seating[count : count + len(lines)]
         lines[: len(seatings)] = [
-            with_entry(line, "seating", one.as_fields()) for line, one in zip(lines, seatings, strict=False)
+            add_entry_to_line(line, "seating", one.as_fields())
+            for line, one in zip(lines, seatings, strict=False)
         ]
         if result.query.passed is not None:
-            lines = with_clearances(lines, result, slice(count, count + len(lines)))
+            lines = add_clearances(lines, result, slice(count, count + len(lines)))
         yield separator + ",\n".join(lines)
         separator, count = ",\n", count + len(lines)
     yield "\n]}\n"
 
 
-def with_entry(line: str, key: str, value: dict[str, Any]) -> str:
+def add_entry_to_line(line: str, key: str, value: dict[str, Any]) -> str:
     return f'{line[:-1]}, "{key}": {json.dumps(value)}}}'
 
 
-def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
-    """The lines of some fixtures, each with what the program's tools come nearest to.
+def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
+    """Return the lines of some fixtures, each with what the program's tools come nearest to.
 
     Nothing is said where no tool comes down to the pegs.
     """
@@ -104,7 +105,7 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
 
     assert result.query.passed is not None
     program = result.query.passed[0]
-    toolkit, (_, table) = result.toolkit, as_written(result.table.take(rows))
+    toolkit, (_, table) = result.toolkit, round_table_for_file(result.table.take(rows))
     near = find_nearest_moves(table, result.workpiece, toolkit, *result.query.passed)
     out = []
     for number, line in enumerate(lines):
@@ -115,24 +116,24 @@ def with_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
                 "tool": int(near.tool[number]),
                 "element": element_name(table, toolkit, number, int(near.contact[number])),
             }
-            line = with_entry(line, "program_clearance", said)
+            line = add_entry_to_line(line, "program_clearance", said)
         out.append(line)
-    return out if program.forces is None else with_forces(out, table, result, program)
+    return out if program.forces is None else add_program_forces(out, table, result, program)
 
 
-def with_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
+def add_program_forces(lines: list[str], table: FixtureTable, result: Result, program: Program) -> list[str]:
     from workhold.statics.program_forces import find_cutting_needs
 
     jaw_force = result.query.jaw_force
     needs = find_cutting_needs(table, result.workpiece, result.toolkit, program, jaw_force)
     return [
-        line if need is None else with_entry(line, "program_forces", need.to_dict())
+        line if need is None else add_entry_to_line(line, "program_forces", need.to_dict())
         for line, need in zip(lines, needs, strict=True)
     ]
 
 
-def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
-    """Everything in the file but the fixtures, at full precision.
+def make_head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
+    """Return everything in the file but the fixtures, at full precision.
 
     Parameters
     ----------
@@ -140,34 +141,34 @@ def head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
     """
     return {
         "format": FORMAT,
-        **solid_entry(result.workpiece.solid),
-        "workpiece": workpiece_entry(result.workpiece),
-        **outlines_entry(result.workpiece),
-        **asked_entry(result.query, with_pieces),
+        **make_solid_entry(result.workpiece.solid),
+        "workpiece": make_workpiece_entry(result.workpiece),
+        **make_own_outlines_entry(result.workpiece),
+        **make_query_entry(result.query, with_pieces),
         "counts": result.counts,
         "found": {kind: int(count) for kind, count in result.found.items()},
         "distinct": {kind: int(count) for kind, count in result.distinct.items()},
         "complete": bool(result.complete),
-        **notes_entry(result.notes),
+        **make_notes_entry(result.notes),
         **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
-        **error_entry(result),
+        **make_least_error_entry(result),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
-    } | ({} if result.proof is None else {"proof": proof_entry(result.proof)})
+    } | ({} if result.proof is None else {"proof": make_proof_entry(result.proof)})
 
 
-def notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
-    """Notes as they are written: their sentences, and their data in the same order."""
+def make_notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
+    """Note as they are written: their sentences, and their data in the same order."""
     return {"notes": [note.words for note in notes], "note_data": [note.data for note in notes]}
 
 
-def error_entry(result: Result) -> dict[str, float]:
-    """The least effective location error as it is written; nothing where the order has no steps."""
+def make_least_error_entry(result: Result) -> dict[str, float]:
+    """Return the least effective location error as it is written; nothing where the order has no steps."""
     least = result.least_effective_error
     return {} if least is None else {"least_effective_error": least}
 
 
-def program_text(program: Program) -> Iterator[str]:
-    """The JSON of a program as ``Program.to_dict`` has it, in parts."""
+def write_program_json(program: Program) -> Iterator[str]:
+    """Yield the JSON of a program as ``Program.to_dict`` has it, in parts."""
     start = json.dumps(program.head())
     yield f'{start[:-1]}, "pieces": ['
     separator, pieces = "", program.iter_entries()
@@ -177,33 +178,33 @@ def program_text(program: Program) -> Iterator[str]:
     yield "]}"
 
 
-def head_texts(
+def write_head_json(
     entries: Mapping[str, Any], program: Program | None, separator: str, is_ascii: bool = True
 ) -> Iterator[str]:
-    """The JSON of a head in parts, with all that a program sweeps and without its last bracket."""
+    """Yield the JSON of a head in parts, with all that a program sweeps and without its last bracket."""
     before = "{"
     for key, value in entries.items():
         yield f"{before}{json.dumps(key)}: "
         if key == "program" and program is not None:
-            yield from program_text(program)
+            yield from write_program_json(program)
         else:
             yield json.dumps(value, ensure_ascii=is_ascii)
         before = separator
 
 
-def workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
-    """A workpiece as it is written; its file has the same form."""
+def make_workpiece_entry(workpiece: Workpiece) -> dict[str, Any]:
+    """Return a workpiece as it is written; its file has the same form."""
     return {
         "name": workpiece.name,
         "units": "mm",
         "loops": [(loop + 0.0).tolist() for loop in workpiece.loops],
         "departure": workpiece.departure,
-        **bands_entry(workpiece.solid),
+        **make_bands_entry(workpiece.solid),
     }
 
 
-def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
-    """The bands of an outline's segments as they are written, and the solid's faces over each."""
+def make_bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
+    """Return the bands of an outline's segments as they are written, and the solid's faces over each."""
     if solid is None:
         return {}
     faces = {"solid_faces": [list(faces) for faces in solid.faces]} if solid.faces else {}
@@ -215,30 +216,30 @@ def bands_entry(solid: SolidOutline | None) -> dict[str, Any]:
     return {"bands": [None if band is None else list(band) for band in solid.bands], **runs, **faces, **level}
 
 
-def solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
-    """How the solid of an outline stands, as it is written; nothing for a prism."""
+def make_solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
+    """Return how the solid of an outline stands, as it is written; nothing for a prism."""
     if solid is None:
         return {}
     return {"solid": {key: getattr(solid, key) for key in STANDING}}
 
 
-def outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
-    """What carriers with heights of their own meet, as it is written; nothing where there are none.
+def make_own_outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
+    """Return what carriers with heights of their own meet, as it is written; nothing where there are none.
 
     Their segments are numbered on after those of the workpiece, in the order in which they stand. An outline
     that is equal to one before it has the numbers of that.
     """
     own = {
-        role: {"loops": [(loop + 0.0).tolist() for loop in one.loops], **bands_entry(one.solid)}
+        role: {"loops": [(loop + 0.0).tolist() for loop in one.loops], **make_bands_entry(one.solid)}
         for role, one in workpiece.outlines
     }
     return {"outlines": own} if own else {}
 
 
-def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
-    """What a query asks about a workpiece, as it is written; see :func:`head`."""
+def make_query_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
+    """Return what a query asks about a workpiece, as it is written; see :func:`make_head`."""
     asked = {
-        **toolkit_entry(query.toolkit),
+        **make_toolkit_entry(query.toolkit),
         "types": list(query.types),
         "contact_margin": float(query.contact_margin),
         "restrictions": {
@@ -254,7 +255,7 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     always = {"best", "jaw_force"} | ({"opening", "foolproof"} if query.seating is not None else set())
     asked |= {
         row.name: value
-        for row in declarations_of(SearchQuestion)
+        for row in list_declarations(SearchQuestion)
         if row.name not in asked
         and ((value := getattr(query, row.name)) != row.default or row.name in always)
     }
@@ -266,41 +267,41 @@ def asked_entry(query: Query, with_pieces: bool = True) -> dict[str, Any]:
     return asked
 
 
-def toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
-    """The key of a toolkit in a file, and its fields, with its kind where it has no key of its own."""
-    fields = toolkit_fields(toolkit)
+def make_toolkit_entry(toolkit: Toolkit) -> dict[str, Any]:
+    """Return the key of a toolkit in a file, and its fields, with its kind where it has no key of its own."""
+    fields = make_toolkit_fields(toolkit)
     key = OWN_KEYS.get(toolkit.kind)
     return {"toolkit": {"kind": toolkit.kind, **fields}} if key is None else {key: fields}
 
 
-def toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
-    """The fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
+def make_toolkit_fields(toolkit: Toolkit) -> dict[str, Any]:
+    """Return the fields of a toolkit as they are written: lengths in mm, holes by name, their number first."""
     # The tolerance stands among what was asked.
     values = asdict(toolkit, recurse=False, filter=lambda one, _: one.name != "tolerance")  # type: ignore[arg-type]
-    fields = {name: written(value) for name, value in values.items()}
+    fields = {name: convert_to_json_value(value) for name, value in values.items()}
     silent = {row.name for row in toolkit.table.fields if row.form in SILENT} | set(HARDWARE)
     fields = {name: value for name, value in fields.items() if name not in silent or value is not None}
     return {name: fields.pop(name) for name in ("pitch", "columns", "rows") if name in fields} | fields
 
 
-def written(value: Any) -> Any:
+def convert_to_json_value(value: Any) -> Any:
     if isinstance(value, tuple):
-        return [written(one) for one in value]
+        return [convert_to_json_value(one) for one in value]
     if isinstance(value, Flat):
         return asdict(value)
     if isinstance(value, (SupportPads, TopClamp, PinLimits)):
-        return {name: written(one) for name, one in asdict(value).items() if one is not None}
+        return {name: convert_to_json_value(one) for name, one in asdict(value).items() if one is not None}
     return value.name if isinstance(value, Holes) else value
 
 
 def load_entry(load: Load) -> dict[str, Any]:
-    """A load as it is written: N, N mm, mm and degrees."""
+    """Return a load as it is written: N, N mm, mm and degrees."""
     entry = {"name": load.name} | asdict(load)
     # What stands in no plane is written where it is said.
     return {key: value for key, value in entry.items() if key not in ("upward", "height") or value}
 
 
-def proof_entry(proof: Proof) -> dict[str, Any]:
+def make_proof_entry(proof: Proof) -> dict[str, Any]:
     return {
         "cells": int(proof.cells),
         "candidates": int(proof.candidates),
@@ -313,7 +314,7 @@ def proof_entry(proof: Proof) -> dict[str, Any]:
                 "segments": [int(face) for face in item.faces],
                 "columns": [int(column) for column in item.columns],
                 "rows": [int(row) for row in item.rows],
-                "theta_deg": float(rounded_degrees(item.theta_deg)),
+                "theta_deg": float(round_degrees(item.theta_deg)),
                 "reach_deg": item.reach_deg,
                 "reason": item.reason,
             }

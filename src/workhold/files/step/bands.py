@@ -32,9 +32,9 @@ from workhold.files.step.edge_curves import (
     WHOLE_TURN,
     EdgeCurve,
     Point3,
-    crossing,
-    curve_point,
-    points_along,
+    compute_curve_point,
+    compute_points_along,
+    find_zero_crossing,
 )
 from workhold.files.step.faces import SolidFace
 from workhold.files.step.library import occ
@@ -42,7 +42,7 @@ from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.geometry.subdivision import BorderPiece, CutCarrier
 from workhold.model.solid import Band
 
-__all__ = ["Covered", "End", "KnownWalls", "Run", "WallEdge", "Walls", "length"]
+__all__ = ["Covered", "End", "KnownWalls", "Run", "WallEdge", "Walls", "measure_band"]
 
 # Edges this far from a carrier in mm, and farther, are not asked whether they lie on it.
 NEAR = 1e-4
@@ -62,8 +62,8 @@ ROUNDING = 1e-6
 HALVINGS = 48
 
 
-def length(band: Band) -> float:
-    """Length of a band in mm, below 0 where two bands had nothing in common."""
+def measure_band(band: Band) -> float:
+    """Return the length of a band in mm, below 0 where two bands had nothing in common."""
     return band[1] - band[0]
 
 
@@ -89,21 +89,31 @@ class WallEdge:
         return self.edge.high - self.edge.low <= ONE_HEIGHT
 
     @classmethod
-    def of(cls, edge: EdgeCurve, segment: Segment) -> WallEdge:
+    def from_edge(cls, edge: EdgeCurve, segment: Segment) -> WallEdge:
         last = len(edge.points) - 1
         if last == 1:
             rise = abs(float(edge.points[1, 2] - edge.points[0, 2]))
             is_steep = segment.length <= STEEP * hypot(rise, segment.length)
             return cls(edge, segment, ((0, 1),), frozenset((0, 1) if is_steep else ()))
         if edge.high - edge.low <= ONE_HEIGHT:
-            return cls(edge, segment, tuple(branches_of(along(segment, edge.points), ())), frozenset())
-        edge, upright = turned_at(edge, segment)
+            return cls(
+                edge,
+                segment,
+                tuple(split_into_branches(compute_positions_along(segment, edge.points), ())),
+                frozenset(),
+            )
+        edge, upright = split_at_turns(edge, segment)
         steep = frozenset(k for k, one in enumerate(edge.parameters.tolist()) if one in upright)
-        return cls(edge, segment, tuple(branches_of(along(segment, edge.points), steep)), steep)
+        return cls(
+            edge,
+            segment,
+            tuple(split_into_branches(compute_positions_along(segment, edge.points), steep)),
+            steep,
+        )
 
-    def cuts(self, low: float, high: float) -> Iterator[Point]:
-        """Points at which an outline is to be cut: ends of branches, and where the edge passes or only just reaches
-        an end of the heights of pegs.
+    def find_cut_points(self, low: float, high: float) -> Iterator[Point]:
+        """Yield the points at which an outline is to be cut: ends of branches, and where the edge passes or
+        only just reaches an end of the heights of pegs.
 
         Where it passes the lower end the outline is cut in any case.
         """
@@ -111,19 +121,21 @@ class WallEdge:
         if self.is_level:
             return
         yield from ((float(points[k, 0]), float(points[k, 1])) for one in self.branches for k in one)
-        yield from self.edge.crossings(high)
+        yield from self.edge.find_crossings_with_height(high)
         away = np.abs(points[:, 2:] - (low, high)).min(axis=1)
         yield from ((float(x), float(y)) for x, y in points[away <= LEAST_GAP, :2])
 
 
-def along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Positions (N,) of points (N, 3) along a segment's line or circle, on a circle without jumps."""
+def compute_positions_along(segment: Segment, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the positions (N,) of points (N, 3) along a segment's line or circle, on a circle without jumps."""
     found = np.array([segment.parameter((x, y)) for x, y in points[:, :2].tolist()])
     return found if isinstance(segment, Line) else np.unwrap(found)
 
 
-def branches_of(places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]) -> Iterator[tuple[int, int]]:
-    """The numbers (first, last) of the points of each branch of an edge.
+def split_into_branches(
+    places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]
+) -> Iterator[tuple[int, int]]:
+    """Yield the numbers (first, last) of the points of each branch of an edge.
 
     At the points that ``cuts`` numbers a branch ends in any case.
     """
@@ -139,8 +151,8 @@ def branches_of(places: NDArray[np.float64], cuts: frozenset[int] | tuple[()]) -
     yield first, len(steps)
 
 
-def slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple[float, float]:
-    """How far an edge goes along its segment, and up, as shares of its length at a parameter."""
+def compute_slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple[float, float]:
+    """Return how far an edge goes along its segment, and up, as shares of its length at a parameter."""
     point, step = occ.gp_Pnt(), occ.gp_Vec()
     edge.curve.D1(parameter, point, step)
     if step.Magnitude() <= ONE_HEIGHT:
@@ -157,8 +169,8 @@ def slopes(edge: EdgeCurve, segment: Segment, parameter: float) -> tuple[float, 
     return float(step.X() * tx + step.Y() * ty) / size, float(step.Z()) / size
 
 
-def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[float]]:
-    """An edge with points wherever it turns, and the parameters at which it is steep or turns back.
+def split_at_turns(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[float]]:
+    """Return an edge with points wherever it turns, and the parameters at which it is steep or turns back.
 
     Its direction is looked at rather than its points: one that turns between its last two points, as a closed
     edge does that begins near its lowest point, shows nothing of that by its points.
@@ -169,9 +181,9 @@ def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[f
         parameters = np.union1d(parameters, np.linspace(parameters[0], parameters[-1], count))
 
     def slope(kind: int, parameter: float) -> float:
-        return slopes(edge, segment, parameter)[kind]
+        return compute_slopes(edge, segment, parameter)[kind]
 
-    values = np.array([slopes(edge, segment, t) for t in parameters.tolist()])
+    values = np.array([compute_slopes(edge, segment, t) for t in parameters.tolist()])
     turns: list[set[float]] = [set(), set()]
     for kind in (0, 1):
         for k in np.flatnonzero(values[:-1, kind] * values[1:, kind] < 0).tolist():
@@ -199,7 +211,7 @@ def turned_at(edge: EdgeCurve, segment: Segment) -> tuple[EdgeCurve, frozenset[f
             if abs(slope(0, (low + high) / 2)) <= STEEP:
                 upright.add((low + high) / 2)
     known = np.union1d(parameters, np.array(sorted(turns[0] | turns[1] | upright)))
-    found = evolve(edge, parameters=known, points=points_along(edge.curve, known))
+    found = evolve(edge, parameters=known, points=compute_points_along(edge.curve, known))
     return found, frozenset(upright)
 
 
@@ -219,8 +231,8 @@ class Conic:
     across: Point3
 
     @classmethod
-    def of(cls, curve: Any) -> Conic | None:
-        """That of a curve of Open CASCADE; None of curves of other kinds."""
+    def from_curve(cls, curve: Any) -> Conic | None:
+        """Make the conic of a curve of Open CASCADE; None for curves of other kinds."""
         kind = curve.GetType()
         if kind not in (occ.GeomAbs_Circle, occ.GeomAbs_Ellipse):
             return None
@@ -234,8 +246,8 @@ class Conic:
         )
         return cls((place.X(), place.Y(), place.Z()), along, across)
 
-    def height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
-        """The z in mm at which it passes a place on a carrier, between two parameters.
+    def compute_height_at(self, carrier: Segment, place: float, first: float, last: float) -> float | None:
+        """Return the z in mm at which it passes a place on a carrier, between two parameters.
 
         They are less than half a turn apart. The place is in mm on a line and in radians on a circle. None
         where it is not passed between them.
@@ -286,9 +298,9 @@ class Branch:
     known: dict[float, float] = field(init=False, factory=dict)
 
     @classmethod
-    def over(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[Branch]:
+    def make_branches(cls, carrier: Segment, wall_edge: WallEdge) -> Iterator[Branch]:
         edge = wall_edge.edge
-        places = along(carrier, edge.points)
+        places = compute_positions_along(carrier, edge.points)
         for first, last in wall_edge.branches:
             part = slice(first, last + 1)
             values = edge.parameters[part], places[part], edge.points[part, 2]
@@ -304,16 +316,16 @@ class Branch:
         least, greatest = float(self.heights.min()), float(self.heights.max())
         return float(self.heights[0]) if greatest - least <= ONE_HEIGHT else None
 
-    def turns(self, position: float) -> list[float]:
-        """What is added to a position to find it among its places: whole turns on a circle."""
+    def list_turns_to_add(self, position: float) -> list[float]:
+        """Return what is added to a position to find it among its places: whole turns on a circle."""
         first, last = float(self.places[0]), float(self.places[-1])
         if isinstance(self.carrier, Arc) and abs(last - first - tau) <= WHOLE_TURN:
             return [first + (position - first) % tau - position]
         around = (0.0,) if isinstance(self.carrier, Line) else (-2 * tau, -tau, 0.0, tau, 2 * tau)
         return [turn for turn in around if first < position + turn < last]
 
-    def at(self, place: float) -> float:
-        """The z in mm at a place; beyond an end that of the end."""
+    def compute_height_at(self, place: float) -> float:
+        """Return the z in mm at a place; beyond an end that of the end."""
         if self.level is not None:
             return self.level
         places, heights = self.listed
@@ -327,7 +339,7 @@ class Branch:
         if len(self.edge.points) == 2 or abs(last - first) <= ONE_HEIGHT or share in (0.0, 1.0):
             return first + share * (last - first)
         if place not in self.known:
-            self.known[place] = self.refined(k, place)
+            self.known[place] = self.refine_height(k, place)
         return self.known[place]
 
     @cached_property
@@ -335,12 +347,12 @@ class Branch:
         """Its places and heights as plain numbers, of which one is asked for much faster."""
         return self.places.tolist(), self.heights.tolist()
 
-    def refined(self, k: int, place: float) -> float:
-        """The z in mm at which a curved edge passes a place between its points k and k + 1."""
+    def refine_height(self, k: int, place: float) -> float:
+        """Return the z in mm at which a curved edge passes a place between its points k and k + 1."""
         if self.conic is not None:
-            z = self.conic.height_at(self.carrier, place, *self.parameters[k : k + 2].tolist())
+            z = self.conic.compute_height_at(self.carrier, place, *self.parameters[k : k + 2].tolist())
             if z is not None:
-                return self.within(k, z)
+                return self.clamp_height(k, z)
         # One point of the library for all: making one takes longer than finding it.
         point, carrier, near = occ.gp_Pnt(), self.carrier, float(self.places[k])
         find, x_of, y_of = self.edge.curve.D0, point.X, point.Y
@@ -359,23 +371,25 @@ class Branch:
                 return near + (found - near + pi) % tau - pi - place
 
         ends = [(float(self.parameters[j]), float(self.places[j]) - place) for j in (k, k + 1)]
-        return self.within(k, curve_point(self.edge.curve, crossing(value, ends[0], ends[1]))[2])
+        return self.clamp_height(
+            k, compute_curve_point(self.edge.curve, find_zero_crossing(value, ends[0], ends[1]))[2]
+        )
 
-    def within(self, k: int, z: float) -> float:
-        """A z in mm, no farther than the heights of the points k and k + 1."""
+    def clamp_height(self, k: int, z: float) -> float:
+        """Return a z in mm, no farther than the heights of the points k and k + 1."""
         return min(max(z, float(self.heights[k : k + 2].min())), float(self.heights[k : k + 2].max()))
 
     @cached_property
     def conic(self) -> Conic | None:
         """The circle or the ellipse that the edge is a piece of; None of other curves."""
-        return Conic.of(self.edge.curve)
+        return Conic.from_curve(self.edge.curve)
 
-    def extent(self, low: float, high: float) -> Band:
-        """The least and the greatest z in mm between two places."""
+    def compute_height_range(self, low: float, high: float) -> Band:
+        """Return the least and the greatest z in mm between two places."""
         if self.level is not None:
             return self.level, self.level
         inner = self.heights[(self.places > low) & (self.places < high)].tolist()
-        found = (self.at(low), self.at(high), *inner)
+        found = (self.compute_height_at(low), self.compute_height_at(high), *inner)
         return min(found), max(found)
 
 
@@ -395,30 +409,30 @@ class End:
     low: float
     high: float
 
-    def at(self, position: float) -> float:
-        """The z in mm at a position of the piece."""
-        return min(max(self.branch.at(position + self.turn), self.low), self.high)
+    def compute_height_at(self, position: float) -> float:
+        """Return the z in mm at a position of the piece."""
+        return min(max(self.branch.compute_height_at(position + self.turn), self.low), self.high)
 
-    def extent(self, low: float, high: float) -> Band:
-        """The least and the greatest z in mm between two positions of the piece."""
-        least, greatest = self.branch.extent(low + self.turn, high + self.turn)
+    def compute_height_range(self, low: float, high: float) -> Band:
+        """Return the least and the greatest z in mm between two positions of the piece."""
+        least, greatest = self.branch.compute_height_range(low + self.turn, high + self.turn)
         return min(max(least, self.low), self.high), min(max(greatest, self.low), self.high)
 
-    def inner(self, low: float, high: float) -> list[float]:
-        """Positions between two others at which it may turn, and some between; none of a level end."""
+    def list_inner_positions(self, low: float, high: float) -> list[float]:
+        """Return the positions between two others at which it may turn, and some between; none of a level end."""
         if self.branch.level is not None:
             return []
         places = self.branch.places - self.turn
         return [float(place) for place in places[(places > low) & (places < high)]]
 
-    def jumps_at(self, position: float, beside: float, slack: float) -> bool:
-        """Whether the branch is steep where it has an end at a position, seen from a position beside."""
+    def is_steep_at(self, position: float, beside: float, slack: float) -> bool:
+        """Return whether the branch is steep where it has an end at a position, seen from a position beside."""
         places = self.branch.places[[0, -1]] - self.turn
         steep = any(
             is_steep and abs(float(place) - position) <= slack
             for place, is_steep in zip(places, self.branch.steep, strict=True)
         )
-        return steep and self.low < self.branch.at(beside + self.turn) < self.high
+        return steep and self.low < self.branch.compute_height_at(beside + self.turn) < self.high
 
 
 @frozen(eq=False)
@@ -433,16 +447,16 @@ class Run:
     lower: End
     upper: End
 
-    def at(self, position: float) -> Band:
-        return self.lower.at(position), self.upper.at(position)
+    def compute_heights_at(self, position: float) -> Band:
+        return self.lower.compute_height_at(position), self.upper.compute_height_at(position)
 
-    def common(self, low: float, high: float) -> Band:
-        """The heights that it has at every position between two; below 0 long where there are none."""
-        return self.lower.extent(low, high)[1], self.upper.extent(low, high)[0]
+    def compute_common_band(self, low: float, high: float) -> Band:
+        """Return the heights that it has at every position between two; below 0 long where there are none."""
+        return self.lower.compute_height_range(low, high)[1], self.upper.compute_height_range(low, high)[0]
 
-    def most(self, low: float, high: float) -> float:
-        """A length in mm that it has nowhere more than between two positions, if not the most it has."""
-        return self.upper.extent(low, high)[1] - self.lower.extent(low, high)[0]
+    def bound_length(self, low: float, high: float) -> float:
+        """Return a length in mm that it has nowhere more than between two positions, if not the most it has."""
+        return self.upper.compute_height_range(low, high)[1] - self.lower.compute_height_range(low, high)[0]
 
 
 @frozen(eq=False)
@@ -473,26 +487,26 @@ class Covered:
         """Its first and its last position in the direction of the border."""
         return (self.low, self.high) if self.piece.forward else (self.high, self.low)
 
-    def part(self, low: float, high: float) -> Covered:
-        """What lies between two positions."""
+    def cut_between(self, low: float, high: float) -> Covered:
+        """Return what lies between two positions."""
         return evolve(self, low=low, high=high)
 
-    def parts(self, positions: Sequence[float]) -> list[Covered]:
-        """It cut at some positions, in the direction of the border."""
-        found = [self.part(a, b) for a, b in pairwise([self.low, *sorted(positions), self.high])]
+    def cut_at(self, positions: Sequence[float]) -> list[Covered]:
+        """Cut it at some positions; the pieces follow the direction of the border."""
+        found = [self.cut_between(a, b) for a, b in pairwise([self.low, *sorted(positions), self.high])]
         return found if self.piece.forward else found[::-1]
 
-    def longest_at(self, position: float) -> float:
-        """Length in mm of the longest run at a position."""
-        return max((length(run.at(position)) for run in self.runs), default=0.0)
+    def measure_longest_run_at(self, position: float) -> float:
+        """Return the length in mm of the longest run at a position."""
+        return max((measure_band(run.compute_heights_at(position)) for run in self.runs), default=0.0)
 
-    def inner(self) -> list[float]:
-        """Positions within it at which a run may be longest or shortest around, and some between; sorted."""
+    def list_inner_positions(self) -> list[float]:
+        """Return the positions within it at which a run may be longest or shortest around, and some between; sorted."""
         found = {
             place
             for run in self.runs
             for end in (run.lower, run.upper)
-            for place in end.inner(self.low, self.high)
+            for place in end.list_inner_positions(self.low, self.high)
         }
         return sorted(found)
 
@@ -510,13 +524,13 @@ class Wall:
     index: int
     branches: tuple[Branch, ...]
 
-    def ranges(self, position: float, low: float, high: float) -> list[tuple[float, float, Run]]:
-        """Ranges of z in mm that the face covers at a position between two heights, the lowest first."""
+    def list_covered_ranges(self, position: float, low: float, high: float) -> list[tuple[float, float, Run]]:
+        """Return the ranges of z in mm that the face covers at a position between two heights, the lowest first."""
         passed = sorted(
             (
-                (branch.at(position + turn), End(branch, turn, low, high))
+                (branch.compute_height_at(position + turn), End(branch, turn, low, high))
                 for branch in self.branches
-                for turn in branch.turns(position)
+                for turn in branch.list_turns_to_add(position)
             ),
             key=lambda one: one[0],
         )
@@ -540,11 +554,11 @@ class KnownWalls:
     edges: dict[int, WallEdge] = field(factory=dict)
     branches: dict[tuple[int, Segment], tuple[Branch, ...]] = field(factory=dict)
 
-    def branches_over(self, carrier: Segment, wall_edge: WallEdge) -> tuple[Branch, ...]:
-        """The branches of an edge over a carrier that holds it, with all heights that they were asked for."""
+    def find_branches_over(self, carrier: Segment, wall_edge: WallEdge) -> tuple[Branch, ...]:
+        """Return the branches of an edge over a carrier that holds it, with all heights that they were asked for."""
         key = id(wall_edge.edge.curve), carrier
         if key not in self.branches:
-            self.branches[key] = tuple(Branch.over(carrier, wall_edge))
+            self.branches[key] = tuple(Branch.make_branches(carrier, wall_edge))
         return self.branches[key]
 
 
@@ -572,7 +586,7 @@ class Walls:
 
     def __attrs_post_init__(self) -> None:
         self.upright = [
-            self.wall_edge(edge, edge.segment)
+            self.find_wall_edge(edge, edge.segment)
             for edge in self.edges
             if self.faces[edge.face].lie == "upright" and edge.segment is not None
         ]
@@ -584,36 +598,38 @@ class Walls:
         ]
         self.places = np.array(places, np.float64).reshape(-1, 5)
 
-    def wall_edge(self, edge: EdgeCurve, segment: Segment) -> WallEdge:
-        """An edge of a wall; two walls that have it have the same curve."""
+    def find_wall_edge(self, edge: EdgeCurve, segment: Segment) -> WallEdge:
+        """Return an edge of a wall; two walls that have it have the same curve."""
         key = id(edge.points)
         if key not in self.known.edges:
-            self.known.edges[key] = WallEdge.of(edge, segment)
+            self.known.edges[key] = WallEdge.from_edge(edge, segment)
         same = self.known.edges[key]
         return same if same.edge.face == edge.face else evolve(same, edge=evolve(same.edge, face=edge.face))
 
-    def cuts(self) -> list[tuple[Segment, Point]]:
-        """Points at which an outline is to be cut, because the runs there may change."""
-        return [(one.segment, point) for one in self.upright for point in one.cuts(self.low, self.high)]
+    def find_cut_points(self) -> list[tuple[Segment, Point]]:
+        """Return the points at which an outline is to be cut, because the runs there may change."""
+        return [
+            (one.segment, point) for one in self.upright for point in one.find_cut_points(self.low, self.high)
+        ]
 
-    def ends(self) -> Iterator[tuple[Segment, Point]]:
-        """Where level edges end: a subdivision that has the edges themselves is cut there."""
+    def find_level_edge_ends(self) -> Iterator[tuple[Segment, Point]]:
+        """Yield where level edges end: a subdivision that has the edges themselves is cut there."""
         for one in self.upright:
             if one.is_level and not (isinstance(one.segment, Arc) and one.segment.is_full):
                 yield from ((one.segment, one.segment.start), (one.segment, one.segment.end))
 
-    def over(self, carrier: CutCarrier) -> list[Wall]:
+    def find_walls_over(self, carrier: CutCarrier) -> list[Wall]:
         if id(carrier) not in self.found:
             branches: defaultdict[int, list[Branch]] = defaultdict(list)
-            for k in self.near(carrier.segment).tolist():
+            for k in self.find_near_edges(carrier.segment).tolist():
                 one = self.upright[k]
                 if carrier.holds(one.segment):
-                    branches[one.edge.face] += self.known.branches_over(carrier.segment, one)
+                    branches[one.edge.face] += self.known.find_branches_over(carrier.segment, one)
             self.found[id(carrier)] = [Wall(index, tuple(own)) for index, own in branches.items()]
         return self.found[id(carrier)]
 
-    def near(self, segment: Segment) -> NDArray[np.intp]:
-        """Numbers of upright faces' edges that may lie on a segment's line or circle."""
+    def find_near_edges(self, segment: Segment) -> NDArray[np.intp]:
+        """Return the numbers of upright faces' edges that may lie on a segment's line or circle."""
         radius = self.places[:, 4]
         if isinstance(segment, Arc):
             away = np.abs(self.places[:, [0, 1, 4]] - (*segment.center, segment.radius)).max(
@@ -624,18 +640,18 @@ class Walls:
         across = np.abs((self.places[:, 0:4:2] - x) * ty - (self.places[:, 1:4:2] - y) * tx)
         return np.flatnonzero((radius == 0.0) & (across.max(axis=1, initial=0) <= NEAR))
 
-    def covered(self, piece: BorderPiece) -> Covered:
-        """A piece of the border with the runs over it.
+    def find_covered(self, piece: BorderPiece) -> Covered:
+        """Return a piece of the border with the runs over it.
 
         No wall there has its material on the other side: a peg would meet that, and the piece were no border.
         """
-        walls = self.over(piece.carrier)
+        walls = self.find_walls_over(piece.carrier)
         middle = clear_place(piece, [branch for wall in walls for branch in wall.branches])
         ranges = sorted(
             (
                 (low, high, wall.index, run)
                 for wall in walls
-                for low, high, run in wall.ranges(middle, self.low, self.high)
+                for low, high, run in wall.list_covered_ranges(middle, self.low, self.high)
             ),
             key=lambda one: one[:3],
         )
@@ -651,7 +667,7 @@ class Walls:
 
 
 def clear_place(piece: BorderPiece, branches: Sequence[Branch]) -> float:
-    """A position of a piece at which no branch ends.
+    """Return a position of a piece at which no branch ends.
 
     Edges beyond the heights of pegs may end anywhere along it.
     """

@@ -15,31 +15,31 @@ from workhold.files import questions
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Drawing
 from workhold.files.questions import PEG_HEIGHT
-from workhold.files.step.departures import other_axis_remarks
+from workhold.files.step.departures import suggest_other_axis
 from workhold.files.step.heights import (
     HEAD_ROOM,
     LEAST_BAND,
     OwnDrawing,
     StandingSolid,
-    advice,
-    height_remarks,
-    height_table,
-    own_drawings,
-    standing,
+    advise_on_height,
+    describe_outline_by_height,
+    draw_own_outlines,
+    stand_solid,
+    tabulate_peg_heights,
 )
-from workhold.files.step.level_faces import known_levels
-from workhold.files.step.library import along, axis_named, guarded
+from workhold.files.step.level_faces import collect_level_faces
+from workhold.files.step.library import check_axis_name, read_guarded, turn_axis_up
 from workhold.files.step.projected import OtherCurveError
-from workhold.files.step.reader import drawing_of, plain_drawing, prepare, read_solid
+from workhold.files.step.reader import convert_drawing_to_data, prepare, read_solid, restore_drawing
 from workhold.files.step.solids import (
     Solid,
-    chosen_solid,
-    lost_remarks,
+    choose_solid,
+    describe_lost_solids,
+    describe_other_solids,
+    list_solids_of_shapes,
     read_solids,
-    solid_remarks,
-    solids_of_shapes,
 )
-from workhold.files.step.usual_height import UsualHeight, usual_height
+from workhold.files.step.usual_height import UsualHeight, choose_usual_height
 from workhold.model.solid import FileSolid, HeightRow, SolidOutline
 
 __all__ = [
@@ -48,8 +48,8 @@ __all__ = [
     "prepare",
     "read_by_height",
     "read_by_height_apart",
-    "shapes_by_height",
-    "shapes_usual",
+    "draw_shapes_by_height",
+    "draw_shapes_at_usual_height",
 ]
 
 # Faces times sections of a solid of which the library makes a silhouette within seconds.
@@ -119,14 +119,14 @@ class HeightDrawing:
 def read_by_height_apart(
     content: bytes, view: HeightView, or_silhouette: bool = False
 ) -> HeightDrawing | Drawing:
-    """Runs :func:`read_by_height` in a process of its own: damaged files crash or hang the library."""
+    """Run :func:`read_by_height` in a process of its own: damaged files crash or hang the library."""
     options = {"view": asdict(view), "or_silhouette": or_silhouette}
     by_height, answered = run_apart(__name__, content, options, "the STEP file")
-    return height_drawing_of(answered) if by_height else drawing_of(answered)
+    return restore_height_drawing(answered) if by_height else restore_drawing(answered)
 
 
-def height_drawing_of(answered: Any) -> HeightDrawing:
-    """The drawing of what :func:`plain_heights` makes."""
+def restore_height_drawing(answered: Any) -> HeightDrawing:
+    """Return the drawing of what :func:`convert_height_drawing_to_data` makes."""
     loops, solid, remarks, rows, own, solids, usual = answered
     return HeightDrawing(
         tuple(np.array(loop) for loop in loops),
@@ -139,53 +139,63 @@ def height_drawing_of(answered: Any) -> HeightDrawing:
     )
 
 
-def plain(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
-    """What :func:`read_by_height` reads as plain data, and before it whether that is an outline by height.
+def read_as_plain_data(content: bytes, view: dict[str, Any], or_silhouette: bool) -> Any:
+    """Return what :func:`read_by_height` reads as plain data, and before it whether that is an outline by
+    height.
 
     Refuses a file over which the library or the arithmetic after it fails, too.
     """
-    found = guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
-    return (False, plain_drawing(found)) if isinstance(found, Drawing) else (True, plain_heights(found))
+    found = read_guarded(lambda: read_by_height(content, HeightView(**view), or_silhouette), ValueError)
+    return (
+        (False, convert_drawing_to_data(found))
+        if isinstance(found, Drawing)
+        else (True, convert_height_drawing_to_data(found))
+    )
 
 
-def usual_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
-    """The outline of pegs as high as the part; the silhouette where there is none of these to be touched.
+def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
+    """Return the outline of pegs as high as the part; the silhouette where there is none of these to be
+    touched.
 
     The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
     may be touched.
     """
-    chosen = chosen_solid(solids, view.part_number)
-    solid = guarded(lambda: turned_up(chosen, view))
+    chosen = choose_solid(solids, view.part_number)
+    solid = read_guarded(lambda: turn_solid_up(chosen, view))
     try:
-        drawing = guarded(lambda: drawn(chosen.shape, solid, view, is_advised=False), ValueError)
+        drawing = read_guarded(
+            lambda: draw_solid_by_height(chosen.shape, solid, view, is_advised=False), ValueError
+        )
     except InputError as error:
         refusal = error
     else:
-        return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+        return evolve(
+            drawing, remarks=(*describe_other_solids(solids, chosen, view.part_number), *drawing.remarks)
+        )
     # A curve of the border is known to be neither line nor arc, and sections may offer others in its place.
     is_curve = isinstance(refusal.__cause__, OtherCurveError)
     try:
-        if is_curve and sections_take_long(solid):
+        if is_curve and takes_long_by_sections(solid):
             raise refusal
         silhouette = read_solid(solids, view.axis, None, view.part_number, None)
     except InputError:
         if is_curve:
-            raise advised(refusal, solid, view) from refusal
+            raise add_height_advice(refusal, solid, view) from refusal
         raise
-    if guarded(lambda: is_prism(solid)):
+    if read_guarded(lambda: is_prism(solid)):
         return silhouette
     unknown = f"At which heights its faces are touched is not known: {refusal}"
     return evolve(silhouette, remarks=(*silhouette.remarks, unknown))
 
 
-def sections_take_long(solid: StandingSolid) -> bool:
-    """Whether a silhouette made of sections would take the library longer than anybody waits."""
+def takes_long_by_sections(solid: StandingSolid) -> bool:
+    """Return whether a silhouette made of sections would take the library longer than anybody waits."""
     heights = {round(z, 5) for face in solid.faces if face.lie != "upright" for z in (face.low, face.high)}
     return len(heights) * len(solid.faces) > MOST_SECTIONS
 
 
-def plain_heights(drawing: HeightDrawing) -> Any:
-    """An outline by height as plain data, see :func:`height_drawing_of`."""
+def convert_height_drawing_to_data(drawing: HeightDrawing) -> Any:
+    """Return an outline by height as plain data, see :func:`restore_height_drawing`."""
     loops = [loop.tolist() for loop in drawing.loops]
     rows = [astuple(row) for row in drawing.heights]
     own = [(one.role, [loop.tolist() for loop in one.loops], astuple(one.solid)) for one in drawing.own]
@@ -195,48 +205,52 @@ def plain_heights(drawing: HeightDrawing) -> Any:
 
 
 def read_by_height(content: bytes, view: HeightView, or_silhouette: bool = False) -> HeightDrawing | Drawing:
-    """The outline of a solid in a STEP file at the height of the pegs.
+    """Return the outline of a solid in a STEP file at the height of the pegs.
 
-    Where nobody says how high the pegs are, ``or_silhouette`` is for :func:`usual_drawing`. Refuses outlines
+    Where nobody says how high the pegs are, ``or_silhouette`` is for :func:`draw_at_usual_height`. Refuses outlines
     that are not made of lines and arcs.
     """
     solids = read_solids(content)
-    found = usual_drawing(solids, view) if or_silhouette else height_drawing(solids, view)
-    remarks = (*lost_remarks(content, solids), *found.remarks)
+    found = draw_at_usual_height(solids, view) if or_silhouette else draw_by_height(solids, view)
+    remarks = (*describe_lost_solids(content, solids), *found.remarks)
     return evolve(found, remarks=remarks, solids=tuple(solid.listed for solid in solids))
 
 
-def shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
-    """The outline of one of some shapes of Open CASCADE at the height of the pegs.
+def draw_shapes_by_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing:
+    """Return the outline of one of some shapes of Open CASCADE at the height of the pegs.
 
     Refuses shapes without a solid.
     """
-    solids = solids_of_shapes(shapes)
+    solids = list_solids_of_shapes(shapes)
     if not solids:
         raise InputError(f"only a solid has heights, and the shape holds none: leave {PEG_HEIGHT} out.")
-    return height_drawing(solids, view)
+    return draw_by_height(solids, view)
 
 
-def shapes_usual(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
-    """What :func:`usual_drawing` makes of some shapes of Open CASCADE; None for shapes without a solid."""
-    solids = solids_of_shapes(shapes)
-    return usual_drawing(solids, view) if solids else None
+def draw_shapes_at_usual_height(shapes: Sequence[Any], view: HeightView) -> HeightDrawing | Drawing | None:
+    """Return what :func:`draw_at_usual_height` makes of some shapes of Open CASCADE; None for shapes without
+    a solid.
+    """
+    solids = list_solids_of_shapes(shapes)
+    return draw_at_usual_height(solids, view) if solids else None
 
 
-def height_drawing(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
-    chosen = chosen_solid(solids, view.part_number)
-    drawing = drawn(chosen.shape, turned_up(chosen, view), view)
-    return evolve(drawing, remarks=(*solid_remarks(solids, chosen, view.part_number), *drawing.remarks))
+def draw_by_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing:
+    chosen = choose_solid(solids, view.part_number)
+    drawing = draw_solid_by_height(chosen.shape, turn_solid_up(chosen, view), view)
+    return evolve(
+        drawing, remarks=(*describe_other_solids(solids, chosen, view.part_number), *drawing.remarks)
+    )
 
 
-def turned_up(chosen: Solid, view: HeightView) -> StandingSolid:
-    """A solid as it is looked at; raises InputError for an axis that there is not."""
-    axis = axis_named(view.axis)
+def turn_solid_up(chosen: Solid, view: HeightView) -> StandingSolid:
+    """Return a solid as it is looked at; raise InputError for an axis that there is not."""
+    axis = check_axis_name(view.axis)
     # Along z it is not turned, and its box is known.
-    return standing(along(chosen.shape, axis), chosen.low[2] if axis == "z" else None)
+    return stand_solid(turn_axis_up(chosen.shape, axis), chosen.low[2] if axis == "z" else None)
 
 
-def drawn(
+def draw_solid_by_height(
     shape: Any,
     solid: StandingSolid,
     view: HeightView,
@@ -244,49 +258,49 @@ def drawn(
     is_advised: bool = True,
     has_table: bool = True,
 ) -> HeightDrawing:
-    """The outline of a solid, with remarks on what may be touched and on a height that offers more.
+    """Return the outline of a solid, with remarks on what may be touched and on a height that offers more.
 
     The shape is the solid as the file has it. ``is_advised`` says whether a refusal names a height that
     helps, and ``has_table`` whether what other heights offer is listed; many heights are looked at for
     either.
     """
-    axis, room, least = axis_named(view.axis), view.head_room, view.least_band
+    axis, room, least = check_axis_name(view.axis), view.head_room, view.least_band
     plain_prism = view.peg_height is None and is_prism(solid)
     rows = list[HeightRow]()
     usual: UsualHeight | None = None
     if view.peg_height is None and view.peg_diameter is not None:
-        rows = [] if plain_prism else height_table(solid, room, least)
-        usual = usual_height(solid, rows, view.peg_diameter, room, least, plain_prism)
+        rows = [] if plain_prism else tabulate_peg_heights(solid, room, least)
+        usual = choose_usual_height(solid, rows, view.peg_diameter, room, least, plain_prism)
     try:
-        outline = solid.outline(view.peg_height if usual is None else usual.peg_height, room, least)
+        outline = solid.make_outline(view.peg_height if usual is None else usual.peg_height, room, least)
     except InputError as error:
         refusal = InputError(f"along {axis}: {error}.")
-        raise advised(refusal, solid, view) if is_advised else refusal from error
+        raise add_height_advice(refusal, solid, view) if is_advised else refusal from error
     if not any(outline.bands):
         raise InputError(
             f"along {axis} no upright face of the part is at least {least:g} mm high below "
-            f"{outline.peg_height:g} mm: {advice(solid, room, least)}."
+            f"{outline.peg_height:g} mm: {advise_on_height(solid, room, least)}."
         )
     sizes = (solid.height, outline.peg_height, room, least)
-    found = SolidOutline(axis, *sizes, outline.bands, outline.faces, **known_levels(solid))
+    found = SolidOutline(axis, *sizes, outline.bands, outline.faces, **collect_level_faces(solid))
     found = evolve(found, runs=outline.runs)
-    own = tuple(own_drawings(solid, view.heights, found))
+    own = tuple(draw_own_outlines(solid, view.heights, found))
     if usual is None and has_table and not plain_prism:
-        rows = height_table(solid, room, least)
-    remarks = [] if plain_prism else height_remarks(outline, found, rows)
+        rows = tabulate_peg_heights(solid, room, least)
+    remarks = [] if plain_prism else describe_outline_by_height(outline, found, rows)
     remarks += [] if usual is None else usual.remarks
     if any(band is None for band in outline.bands):
-        remarks += other_axis_remarks(shape, axis)
+        remarks += suggest_other_axis(shape, axis)
     return HeightDrawing(outline.vertices, found, tuple(remarks), tuple(rows), own, usual=usual)
 
 
-def advised(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
-    instead = advice(solid, view.head_room, view.least_band)
+def add_height_advice(refusal: InputError, solid: StandingSolid, view: HeightView) -> InputError:
+    instead = advise_on_height(solid, view.head_room, view.least_band)
     return InputError(f"{str(refusal).removesuffix('.')}; {instead}.")
 
 
 def is_prism(solid: StandingSolid) -> bool:
-    """Whether a solid has the same section at every height."""
+    """Return whether a solid has the same section at every height."""
     ends = (0.0, solid.height)
     return all(
         face.lie == "upright" or (face.lie == "level" and min(abs(face.low - z) for z in ends) <= SAME_HEIGHT)

@@ -18,18 +18,18 @@ from numpy.typing import NDArray
 
 from workhold.conventions import DEPARTS, FREE_AREA, OVERHANG, SAME_AREA, SAME_HEIGHT
 from workhold.errors import InputError
-from workhold.files.outline.chain import listed
-from workhold.files.outline.joining import closed_loop
-from workhold.files.outline.nesting import DrawnPart, nest
+from workhold.files.outline.chain import list_first_items
+from workhold.files.outline.joining import make_closed_loop
+from workhold.files.outline.nesting import DrawnPart, nest_loops
 from workhold.files.questions import AXIS, SECTION
-from workhold.files.step.faces import Layer, SolidFace, lie_of, surface_points
-from workhold.files.step.library import AXES, occ, sub_shapes
-from workhold.files.step.regions import Borders, area_of, section
+from workhold.files.step.faces import Layer, SolidFace, classify_lie, sample_surface_points
+from workhold.files.step.library import AXES, list_sub_shapes, occ
+from workhold.files.step.regions import Borders, cut_solid_at_height, measure_area
 from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
 from workhold.geometry.segment import segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 
-__all__ = ["Outline", "departure_remarks", "other_axis_remarks", "refuse_overhang"]
+__all__ = ["Outline", "describe_departures", "suggest_other_axis", "refuse_overhang"]
 
 
 @frozen
@@ -53,7 +53,7 @@ class Outline:
     departure: float = 0.0
 
     @classmethod
-    def of(cls, edges: Borders, area: float, faces: Sequence[SolidFace]) -> Outline:
+    def from_borders(cls, edges: Borders, area: float, faces: Sequence[SolidFace]) -> Outline:
         """Measure faces against the outline that the borders of a region of some area make.
 
         Raises
@@ -62,7 +62,7 @@ class Outline:
             When the borders do not enclose one region of that area, so that the library's work cannot be
             right.
         """
-        parts = nest([closed_loop(chain) for chain in edges.chains])
+        parts = nest_loops([make_closed_loop(chain) for chain in edges.chains])
         border = sum(
             segment.length
             for part in parts
@@ -75,10 +75,10 @@ class Outline:
                 f"the sections of the solid do not make one outline: give another {AXIS}, or {SECTION}, or "
                 "repair the solid in the CAD program."
             )
-        rows = oriented_rows(parts[0])
+        rows = make_oriented_rows(parts[0])
         insets, overhangs = [], []
         for face in faces:
-            points = surface_points(face)
+            points = sample_surface_points(face)
             away = outline_distances(points, rows)
             inside = np.array([bool(is_inside(x, y, rows)) for x, y in points])
             insets.append(float(np.where(inside, away, 0.0).max(initial=0.0)))
@@ -87,8 +87,8 @@ class Outline:
         return cls(area, low, high, tuple(insets), tuple(overhangs), edges.departure)
 
 
-def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
-    """Kernel rows of all loops of a part, material on the left of each."""
+def make_oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
+    """Return the kernel rows of all loops of a part, material on the left of each."""
     rows = []
     for k, loop in enumerate(part.loops):
         segments = loop_segments(loop.vertices)
@@ -99,22 +99,22 @@ def oriented_rows(part: DrawnPart) -> NDArray[np.float64]:
 
 
 def refuse_overhang(outline: Outline, faces: Sequence[SolidFace], solid: Any, axis: str) -> None:
-    """Refuses a silhouette that some face reaches out of: its true border is not made of lines and circles."""
+    """Refuse a silhouette that some face reaches out of: its true border is not made of lines and circles."""
     worst = int(np.argmax(outline.overhangs))
     if outline.overhangs[worst] <= OVERHANG + outline.departure:
         return
     face = faces[worst]
-    name = other_axis(solid, axis)
+    name = find_other_axis(solid, axis)
     another = f", or {AXIS} {name}" if name else ""
     raise InputError(
         f"along {axis} the silhouette is not made of lines and circles: a {face.kind} at "
-        f"{heights(outline, face)} reaches {outline.overhangs[worst]:.3g} mm out of what is; give "
+        f"{describe_face_heights(outline, face)} reaches {outline.overhangs[worst]:.3g} mm out of what is; give "
         f"{SECTION}, the height above the part's lowest point (0 to {outline.high - outline.low:.6g} mm) at "
         f"which the pegs touch{another}."
     )
 
 
-def departure_remarks(
+def describe_departures(
     outline: Outline,
     faces: Sequence[SolidFace],
     layers: Sequence[Layer],
@@ -123,12 +123,12 @@ def departure_remarks(
     axis: str,
     section_height: float | None,
 ) -> list[str]:
-    """What is not prismatic about a part, its departure, and where pegs have to touch; empty for a prism."""
-    groups = departures(outline, faces)
+    """Return what is not prismatic about a part, its departure, and where pegs have to touch; empty for a prism."""
+    groups = list_departures(outline, faces)
     chosen = section_height is not None
     if not groups and max(outline.overhangs) <= OVERHANG + outline.departure:
         return ["The part is prismatic: its section is the same at every height."] if chosen else []
-    remarks = [f"Not prismatic along {axis}: {listed(groups)}."] if groups else []
+    remarks = [f"Not prismatic along {axis}: {list_first_items(groups)}."] if groups else []
     if chosen:
         over = max(outline.overhangs)
         reach = (
@@ -140,26 +140,26 @@ def departure_remarks(
             f"The outline is the section at height {section_height:g} mm{reach}: pegs have to touch there."
         )
     else:
-        remarks.append(silhouette_remark(outline, layers, shape))
+        remarks.append(describe_silhouette(outline, layers, shape))
     if any(face.lie == "leaning" for face in faces):
-        remarks += other_axis_remarks(solid, axis)
+        remarks += suggest_other_axis(solid, axis)
     return remarks
 
 
-def other_axis_remarks(solid: Any, axis: str) -> list[str]:
-    """A sentence on another axis along which no face of a solid leans, where there is one."""
-    name = other_axis(solid, axis)
+def suggest_other_axis(solid: Any, axis: str) -> list[str]:
+    """Return a sentence on another axis along which no face of a solid leans, where there is one."""
+    name = find_other_axis(solid, axis)
     return (
         [f"Along {name} no face leans: give {AXIS} {name} if the pegs are parallel to that."] if name else []
     )
 
 
-def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
-    """Faces that are no part of the outline, alike ones together, deepest first."""
+def list_departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
+    """Return the faces that are no part of the outline, alike ones together, deepest first."""
     together: dict[tuple[str, str], list[float]] = defaultdict(list)
     for face, inset, overhang in zip(faces, outline.insets, outline.overhangs, strict=True):
         if face.lie != "level" and (face.lie == "leaning" or inset > DEPARTS + outline.departure):
-            together[face.kind, heights(outline, face)].append(max(inset, overhang))
+            together[face.kind, describe_face_heights(outline, face)].append(max(inset, overhang))
     ordered = sorted(together.items(), key=lambda item: (-max(item[1]), item[0]))
     return [
         f"{kind} at {where}{f' ({len(sizes)} of them)' if len(sizes) > 1 else ''}, "
@@ -168,24 +168,24 @@ def departures(outline: Outline, faces: Sequence[SolidFace]) -> list[str]:
     ]
 
 
-def heights(outline: Outline, face: SolidFace) -> str:
-    return f"heights {span(outline, face.low, face.high)}"
+def describe_face_heights(outline: Outline, face: SolidFace) -> str:
+    return f"heights {describe_height_range(outline, face.low, face.high)}"
 
 
-def span(outline: Outline, low: float, high: float) -> str:
-    """Two z as heights, in words; rounding of the coordinates does not show."""
+def describe_height_range(outline: Outline, low: float, high: float) -> str:
+    """Return two z as heights, in words; rounding of the coordinates does not show."""
     first, last = (round(z - outline.low, 6) + 0.0 for z in (low, high))
     return f"{first:.6g} to {last:.6g} mm"
 
 
-def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> str:
-    """Where the section is the whole silhouette, and how much the smallest section lacks."""
+def describe_silhouette(outline: Outline, layers: Sequence[Layer], shape: Any) -> str:
+    """Return where the section is the whole silhouette, and how much the smallest section lacks."""
     whole: list[tuple[float, float]] = []
     lacks: list[tuple[float, float]] = []
     for layer in layers:
         height = layer.high - layer.low
         probed = [layer.middle] if layer.prismatic else [layer.low + s * height for s in (0.01, 0.5, 0.99)]
-        found = [(outline.area - area_of(section(shape, z)), z) for z in probed]
+        found = [(outline.area - measure_area(cut_solid_at_height(shape, z)), z) for z in probed]
         lacks += found
         if layer.prismatic and found[0][0] <= SAME_AREA * outline.area:
             if whole and layer.low - whole[-1][1] <= 2 * SAME_HEIGHT:
@@ -200,15 +200,15 @@ def silhouette_remark(outline: Outline, layers: Sequence[Layer], shape: Any) -> 
             f"The outline is the silhouette; no range of heights has all of it ({lack}): pegs have to reach "
             "over all heights."
         )
-    ranges = " and ".join(span(outline, low, high) for low, high in whole)
+    ranges = " and ".join(describe_height_range(outline, low, high) for low, high in whole)
     where = f"the section at heights {ranges} ({lack})"
     return f"The outline is the silhouette, which is {where}: pegs have to touch there."
 
 
-def other_axis(solid: Any, axis: str) -> str:
-    """Another axis along which no face of a solid leans; empty when there is none."""
-    surfaces = [occ.BRepAdaptor_Surface(face) for face in sub_shapes(solid, "FACE")]
+def find_other_axis(solid: Any, axis: str) -> str:
+    """Return another axis along which no face of a solid leans; empty when there is none."""
+    surfaces = [occ.BRepAdaptor_Surface(face) for face in list_sub_shapes(solid, "FACE")]
     for name, (_, _, up) in AXES.items():
-        if name != axis.lstrip("-") and all(lie_of(surface, up) != "leaning" for surface in surfaces):
+        if name != axis.lstrip("-") and all(classify_lie(surface, up) != "leaning" for surface in surfaces):
             return name
     return ""

@@ -19,8 +19,8 @@ from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, DISGUISE, SHORTEST
-from workhold.files.step.faces import SolidFace, surface_of
-from workhold.files.step.library import occ, sub_shapes
+from workhold.files.step.faces import SolidFace, find_surface
+from workhold.files.step.library import list_sub_shapes, occ
 from workhold.geometry.segment import Arc, Line, Point, Segment
 
 __all__ = [
@@ -28,15 +28,15 @@ __all__ = [
     "Found",
     "ONE_HEIGHT",
     "Point3",
-    "arc_over",
-    "bisected",
-    "crossing",
-    "curve_of",
-    "curve_point",
-    "edge_curves",
-    "extremes",
-    "flattened",
-    "height",
+    "make_arc_between_angles",
+    "bisect_condition",
+    "find_zero_crossing",
+    "make_edge_curve",
+    "compute_curve_point",
+    "list_edge_curves",
+    "find_extremes",
+    "flatten_points",
+    "get_height",
 ]
 
 # Points along a curve that is neither a line nor an arc in the plane, at which its two sides are looked at.
@@ -81,7 +81,7 @@ class EdgeCurve:
     points: NDArray[np.float64]
     is_other: bool
     curve: Any
-    # What :meth:`point_at` found, by its arguments: outlines of all heights ask for the same points.
+    # What :meth:`find_point_where` found, by its arguments: outlines of all heights ask for the same points.
     known: dict[tuple[int, float, bool], Point3] = field(init=False, factory=dict, eq=False, repr=False)
 
     @property
@@ -94,47 +94,48 @@ class EdgeCurve:
         """Highest z of its points in mm."""
         return float(self.points[:, 2].max())
 
-    def point_at(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
-        """The point between the points k and k + 1 at which a value that runs monotonically is as wanted.
+    def find_point_where(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
+        """Return the point between the points k and k + 1 at which a value that runs monotonically is as
+        wanted.
 
         Parameters
         ----------
         value : the height, or the place along the edge's own segment.
         """
-        key = k, wanted, value is height
+        key = k, wanted, value is get_height
         if key not in self.known:
-            self.known[key] = self.found_at(k, value, wanted)
+            self.known[key] = self.search_point_where(k, value, wanted)
         return self.known[key]
 
-    def found_at(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
-        """Finds what :meth:`point_at` returns."""
+    def search_point_where(self, k: int, value: Callable[[Point3], float], wanted: float) -> Point3:
+        """Find what :meth:`find_point_where` returns."""
         a, b = float(self.parameters[k]), float(self.parameters[k + 1])
-        first, last = value(point3(self.points[k])), value(point3(self.points[k + 1]))
+        first, last = value(make_point3(self.points[k])), value(make_point3(self.points[k + 1]))
         if len(self.points) == 2:
             share = (wanted - first) / (last - first)
-            return point3(self.points[0] + share * (self.points[1] - self.points[0]))
+            return make_point3(self.points[0] + share * (self.points[1] - self.points[0]))
         sign = 1.0 if first < wanted else -1.0
-        return curve_point(
+        return compute_curve_point(
             self.curve,
-            crossing(
-                lambda t: sign * (value(curve_point(self.curve, t)) - wanted),
+            find_zero_crossing(
+                lambda t: sign * (value(compute_curve_point(self.curve, t)) - wanted),
                 (a, sign * (first - wanted)),
                 (b, sign * (last - wanted)),
             ),
         )
 
-    def crossings(self, z: float) -> list[Point]:
-        """Points (x, y) at which the edge passes a height."""
+    def find_crossings_with_height(self, z: float) -> list[Point]:
+        """Return the points (x, y) at which the edge passes a height."""
         heights = self.points[:, 2] - z
         passes = np.flatnonzero(heights[:-1] * heights[1:] < 0)
         at_points = 1 + np.flatnonzero((heights[1:-1] == 0.0) & (heights[:-2] * heights[2:] < 0))
         return [
-            *(self.point_at(int(k), height, z)[:2] for k in passes),
-            *(point3(self.points[k])[:2] for k in at_points),
+            *(self.find_point_where(int(k), get_height, z)[:2] for k in passes),
+            *(make_point3(self.points[k])[:2] for k in at_points),
         ]
 
-    def turning_points(self) -> list[Point]:
-        """Points (x, y) within the edge at which it is highest or lowest around."""
+    def find_turning_points(self) -> list[Point]:
+        """Return the points (x, y) within the edge at which it is highest or lowest around."""
         rises = np.diff(self.points[:, 2])
         # An extreme found beside a point of its own makes a step that neither rises nor falls.
         steps = np.flatnonzero(np.abs(rises) > ONE_HEIGHT)
@@ -142,8 +143,8 @@ class EdgeCurve:
         return [(float(self.points[k, 0]), float(self.points[k, 1])) for k in turns]
 
 
-def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
-    """The edges of all faces, each as often as a face has it."""
+def list_edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
+    """Return the edges of all faces, each as often as a face has it."""
     # Edges that are the same whichever way a face runs them, by hash: the library's own map of shapes has
     # another name in every version.
     known: dict[int, list[tuple[Any, int]]] = {}
@@ -162,22 +163,24 @@ def edge_curves(faces: Sequence[SolidFace]) -> list[EdgeCurve]:
     edges = [
         (index, edge, number_of(edge))
         for index, face in enumerate(faces)
-        for edge in sub_shapes(face.shape, "EDGE")
+        for edge in list_sub_shapes(face.shape, "EDGE")
         if not occ.BRep_Tool.Degenerated_s(edge) and edge.Orientation() in borders
     ]
-    carriers = {index: wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
+    carriers = {index: find_wall_carrier(face) for index, face in enumerate(faces) if face.lie == "upright"}
     walls = {number: carriers[index] for index, _, number in edges if carriers.get(index) is not None}
     # Two faces have an edge, and it is the same curve for both.
     curves: dict[int, EdgeCurve] = {}
     for index, edge, number in edges:
         if number not in curves:
-            curves[number] = on_wall(curve_of(index, occ.BRepAdaptor_Curve(edge)), walls.get(number))
+            curves[number] = put_edge_on_wall(
+                make_edge_curve(index, occ.BRepAdaptor_Curve(edge)), walls.get(number)
+            )
     return [evolve(curves[number], face=index) for index, _, number in edges]
 
 
-def wall_carrier(face: SolidFace) -> Segment | None:
-    """A piece of the line or the circle over which an upright face stands; None for a free-form one."""
-    surface = surface_of(face.shape)
+def find_wall_carrier(face: SolidFace) -> Segment | None:
+    """Return a piece of the line or the circle over which an upright face stands; None for a free-form one."""
+    surface = find_surface(face.shape)
     if surface.GetType() == occ.GeomAbs_Plane:
         place, normal = surface.Plane().Location(), surface.Plane().Axis().Direction()
         return Line((place.X(), place.Y()), (place.X() - normal.Y(), place.Y() + normal.X()))
@@ -187,14 +190,14 @@ def wall_carrier(face: SolidFace) -> Segment | None:
     return None
 
 
-def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
-    """An edge of a wall put on the wall, where it is off by no more than a disguise.
+def put_edge_on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
+    """Return an edge of a wall put on the wall, where it is off by no more than a disguise.
 
     Where a leaning face meets a wall, programs write a spline near both, off by 0.001 mm and less. And the
     circle that fits a short arc best is not the wall's within rounding: edges of one wall would lie on
     circles of their own.
 
-    The carrier is that of :func:`wall_carrier`; None for an edge of no wall.
+    The carrier is that of :func:`find_wall_carrier`; None for an edge of no wall.
     """
     if carrier is None or (edge.segment is None and not edge.is_other):
         return edge
@@ -212,76 +215,78 @@ def on_wall(edge: EdgeCurve, carrier: Segment | None) -> EdgeCurve:
     if isinstance(carrier, Line):
         segment: Segment = Line((px + low * tx, py + low * ty), (px + high * tx, py + high * ty))
     else:
-        segment = arc_over(carrier.center, carrier.radius, low, high)
+        segment = make_arc_between_angles(carrier.center, carrier.radius, low, high)
     if segment.length < SHORTEST:
         return evolve(edge, segment=None, is_other=False)
     if most <= EXACT_ON and edge.segment is not None:
         return evolve(edge, segment=segment)
-    values = [(position_along(segment), along.tolist()), (height, edge.points[:, 2].tolist())]
-    more = [one for value, known in values for one in extremes(edge.curve, edge.parameters, known, value)]
+    values = [(make_position_function(segment), along.tolist()), (get_height, edge.points[:, 2].tolist())]
+    more = [
+        one for value, known in values for one in find_extremes(edge.curve, edge.parameters, known, value)
+    ]
     parameters = np.unique(np.concatenate([edge.parameters, more]))
-    points = points_along(edge.curve, parameters)
+    points = compute_points_along(edge.curve, parameters)
     return evolve(edge, segment=segment, is_other=False, parameters=parameters, points=points)
 
 
 def is_one(segment: Segment | None, carrier: Segment, off: float) -> bool:
-    """Whether an edge, ``off`` mm from its wall, has the wall's line or circle within rounding."""
+    """Return whether an edge, ``off`` mm from its wall, has the wall's line or circle within rounding."""
     if isinstance(segment, Arc) and isinstance(carrier, Arc):
         away = max(dist(segment.center, carrier.center), abs(segment.radius - carrier.radius))
         return away <= ONE_HEIGHT
     return isinstance(segment, Line) and off <= ROUNDED
 
 
-def curve_of(face: int, curve: Any) -> EdgeCurve:
-    """One edge seen from above."""
+def make_edge_curve(face: int, curve: Any) -> EdgeCurve:
+    """Return one edge seen from above."""
     first, last = curve.FirstParameter(), curve.LastParameter()
     kind = curve.GetType()
     if kind == occ.GeomAbs_Line:
         parameters = np.array([first, last])
-        points = points_along(curve, parameters)
+        points = compute_points_along(curve, parameters)
         (x0, y0, _), (x1, y1, _) = points.tolist()
         line = Line((x0, y0), (x1, y1)) if hypot(x1 - x0, y1 - y0) >= SHORTEST else None
         return EdgeCurve(face, line, parameters, points, False, curve)
     parameters = np.linspace(first, last, SAMPLES)
-    points = points_along(curve, parameters)
+    points = compute_points_along(curve, parameters)
     if kind == occ.GeomAbs_Circle:
         circle = curve.Circle()
         normal = circle.Axis().Direction()
         if hypot(normal.X(), normal.Y()) <= ALIGNED:
-            arc = level_arc(circle, first, last, points)
+            arc = make_level_arc(circle, first, last, points)
             return EdgeCurve(face, arc, parameters, points, False, curve)
-    segment = flattened(points[:, :2])
+    segment = flatten_points(points[:, :2])
     if segment is None:
         # An upright edge is a single point.
         is_wide = bool(np.ptp(points[:, :2], axis=0).max() > SHORTEST)
         return EdgeCurve(face, None, parameters, points, is_wide, curve)
     more = [
         one
-        for value in (position_along(segment), height)
-        for one in extremes(curve, parameters, [value(point3(point)) for point in points], value)
+        for value in (make_position_function(segment), get_height)
+        for one in find_extremes(curve, parameters, [value(make_point3(point)) for point in points], value)
     ]
     if more:
         parameters = np.unique(np.concatenate([parameters, more]))
-        points = points_along(curve, parameters)
-        segment = flattened(points[:, :2]) or segment
+        points = compute_points_along(curve, parameters)
+        segment = flatten_points(points[:, :2]) or segment
     return EdgeCurve(face, segment, parameters, points, False, curve)
 
 
-def height(point: Point3) -> float:
+def get_height(point: Point3) -> float:
     return point[2]
 
 
-def position_along(segment: Segment) -> Callable[[Point3], float]:
+def make_position_function(segment: Segment) -> Callable[[Point3], float]:
     return lambda point: segment.parameter((point[0], point[1]))
 
 
-def extremes(
+def find_extremes(
     curve: Any,
     parameters: NDArray[np.float64],
     values: Sequence[float],
     value: Callable[[Point3], float],
 ) -> list[float]:
-    """Parameters at which a value along a curve is largest or smallest around, by golden section."""
+    """Return the parameters at which a value along a curve is largest or smallest around, by golden section."""
     found = []
     rises = np.diff(np.array(values))
     for k in np.flatnonzero(rises[:-1] * rises[1:] < 0):
@@ -289,7 +294,7 @@ def extremes(
         a, b = float(parameters[k]), float(parameters[k + 2])
         for _ in range(60):
             c, d = b - GOLDEN * (b - a), a + GOLDEN * (b - a)
-            if sign * value(curve_point(curve, c)) > sign * value(curve_point(curve, d)):
+            if sign * value(compute_curve_point(curve, c)) > sign * value(compute_curve_point(curve, d)):
                 b = d
             else:
                 a = c
@@ -297,38 +302,38 @@ def extremes(
     return found
 
 
-def curve_point(curve: Any, parameter: float) -> Point3:
-    """A point of Open CASCADE's curve in mm."""
+def compute_curve_point(curve: Any, parameter: float) -> Point3:
+    """Return a point of Open CASCADE's curve in mm."""
     value = curve.Value(parameter)
     return value.X(), value.Y(), value.Z()
 
 
-def point3(row: NDArray[np.float64]) -> Point3:
+def make_point3(row: NDArray[np.float64]) -> Point3:
     return float(row[0]), float(row[1]), float(row[2])
 
 
-def points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Points (N, 3) of a curve in mm."""
-    return np.array([curve_point(curve, float(t)) for t in parameters])
+def compute_points_along(curve: Any, parameters: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the points (N, 3) of a curve in mm."""
+    return np.array([compute_curve_point(curve, float(t)) for t in parameters])
 
 
-def arc_over(center: Point, radius: float, low: float, high: float) -> Arc:
-    """The arc between two angles in radians; a whole circle where it lacks no more than rounding."""
+def make_arc_between_angles(center: Point, radius: float, low: float, high: float) -> Arc:
+    """Return the arc between two angles in radians; a whole circle where it lacks no more than rounding."""
     half = (high - low) / 2
     return Arc(center, radius, (low + high) / 2, pi if half > pi - WHOLE_TURN else half, 1.0)
 
 
-def level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
-    """A level circle's arc between two parameters, seen from above."""
+def make_level_arc(circle: Any, first: float, last: float, points: NDArray[np.float64]) -> Arc:
+    """Return a level circle's arc between two parameters, seen from above."""
     center = circle.Location()
     x, y, _ = points[len(points) // 2]
     middle, half = atan2(y - center.Y(), x - center.X()), (last - first) / 2
-    arc = arc_over((center.X(), center.Y()), circle.Radius(), -half, half)
+    arc = make_arc_between_angles((center.X(), center.Y()), circle.Radius(), -half, half)
     return evolve(arc, mid_angle=middle)
 
 
-def flattened(points: NDArray[np.float64]) -> Segment | None:
-    """The line over which points (N, 2) lie, or the arc; None for any other curve.
+def flatten_points(points: NDArray[np.float64]) -> Segment | None:
+    """Return the line over which points (N, 2) lie, or the arc; None for any other curve.
 
     An upright curve on a wall projects to a line or, on a round wall, to an arc.
     """
@@ -348,23 +353,25 @@ def flattened(points: NDArray[np.float64]) -> Segment | None:
     if np.abs(radii - radius).max() > 1e-7 or radius > 1e5:
         return None
     angles = np.unwrap(np.arctan2(points[:, 1] - center[1], points[:, 0] - center[0]))
-    return arc_over((float(center[0]), float(center[1])), radius, float(angles.min()), float(angles.max()))
+    return make_arc_between_angles(
+        (float(center[0]), float(center[1])), radius, float(angles.min()), float(angles.max())
+    )
 
 
-def crossing(value: Function, low: Known, high: Known) -> float:
-    """The place at which a value that is below 0 at one end and not at the other passes 0.
+def find_zero_crossing(value: Function, low: Known, high: Known) -> float:
+    """Return the place at which a value that is below 0 at one end and not at the other passes 0.
 
     The end with the value below 0 comes first; it may be the greater one.
     """
     a, b = low[0], high[0]
-    first, last = narrowed(value, low, high)
-    return sum(bisected(a, b, lambda t: value(t) >= 0.0, (first, last), BISECTIONS)) / 2
+    first, last = narrow_zero_crossing(value, low, high)
+    return sum(bisect_condition(a, b, lambda t: value(t) >= 0.0, (first, last), BISECTIONS)) / 2
 
 
-def bisected(
+def bisect_condition(
     low: float, high: float, holds: Callable[[float], bool], known: tuple[float, float], steps: int
 ) -> tuple[float, float]:
-    """The ends of the last interval of a bisection for the place from which on something holds.
+    """Return the ends of the last interval of a bisection for the place from which on something holds.
 
     It does not hold at ``low``, and does at ``high``. ``known`` are two places between them: it does not hold
     up to the first, and does from the second on.
@@ -385,8 +392,8 @@ def bisected(
     return low, high
 
 
-def narrowed(value: Function, low: Known, high: Known) -> tuple[float, float]:
-    """Two near places between which a value passes 0: it is below 0 at the first, not at the second."""
+def narrow_zero_crossing(value: Function, low: Known, high: Known) -> tuple[float, float]:
+    """Return two near places between which a value passes 0: it is below 0 at the first, not at the second."""
     (a, fa), (b, fb) = low, high
     beside = NARROW * (b - a)
     if not (fa < 0.0 <= fb):

@@ -19,20 +19,20 @@ from numpy.typing import NDArray
 from workhold.conventions import SHORTEST
 from workhold.errors import InputError
 from workhold.files.step.edge_curves import EdgeCurve, Found
-from workhold.files.step.faces import SolidFace, surface_of
-from workhold.files.step.library import occ, sub_shapes
+from workhold.files.step.faces import SolidFace, find_surface
+from workhold.files.step.library import list_sub_shapes, occ
 from workhold.files.step.projected import (
-    bounding_edges,
-    leaning_between,
-    level_cuts,
-    normal_height,
+    compute_normal_height,
+    cut_face_at_height,
+    list_bounding_edges,
+    list_leaning_faces_between,
 )
-from workhold.files.step.regions import edge_curve
+from workhold.files.step.regions import convert_edge_to_pieces
 from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.rational import Pieces, cut
 from workhold.geometry.segment import Line, Point, Segment
 
-__all__ = ["Enclosure", "enclosed_curves", "near_pieces"]
+__all__ = ["Enclosure", "enclose_curves", "split_near_chords"]
 
 Array = NDArray[np.float64]
 # How far in mm control points may be from the chord of a piece that is enclosed, and how many pieces, at most.
@@ -71,9 +71,11 @@ class Enclosure:
         self.boxes = None
 
     def add_points(self, points: Iterable[Point], safe: float = SAFE) -> None:
-        """Adds the hull of some points, see :func:`few_corners`; a line where it is as thin as one."""
+        """Add the hull of some points, see :func:`simplify_hull`; a line where it is as thin as one."""
         every = list(points)
-        corners = few_corners(np.array(compute_convex_hull(every)).reshape(-1, 2), every[0], every[-1], safe)
+        corners = simplify_hull(
+            np.array(compute_convex_hull(every)).reshape(-1, 2), every[0], every[-1], safe
+        )
         if len(corners) < 2 or float(np.hypot(*np.ptp(corners, axis=0))) <= SHORTEST:
             return
         start, end = np.array(every[0]), np.array(every[-1])
@@ -96,7 +98,7 @@ class Enclosure:
         ]
         return [*self.segments, *sides]
 
-    def holds(self, point: Point) -> bool:
+    def may_hold(self, point: Point) -> bool:
         if not self.polygons:
             return False
         if self.boxes is None:
@@ -107,14 +109,15 @@ class Enclosure:
 
 
 def is_within(point: Point, polygon: Array) -> bool:
-    """Whether a point lies in a convex polygon (N, 2) that runs counter-clockwise."""
+    """Return whether a point lies in a convex polygon (N, 2) that runs counter-clockwise."""
     ahead = np.roll(polygon, -1, axis=0) - polygon
     away = np.array(point) - polygon
     return bool((ahead[:, 0] * away[:, 1] - ahead[:, 1] * away[:, 0] >= 0.0).all())
 
 
-def few_corners(hull: Array, start: Point, end: Point, safe: float = SAFE) -> Array:
-    """A convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a chord.
+def simplify_hull(hull: Array, start: Point, end: Point, safe: float = SAFE) -> Array:
+    """Return a convex polygon (N, 2) around a hull with one corner, where that is near, on each side of a
+    chord.
 
     ``safe`` is half of how far in mm the corner may be from the chord.
     """
@@ -124,37 +127,38 @@ def few_corners(hull: Array, start: Point, end: Point, safe: float = SAFE) -> Ar
     kept: list[Array] = []
     for first, last in (ends, [ends[1], ends[0] + len(hull)]):
         run = hull[np.arange(first, last + 1) % len(hull)]
-        apex = crossing_of(run[0], run[1], run[-1], run[-2]) if len(run) > 3 else None
+        apex = intersect_lines(run[0], run[1], run[-1], run[-2]) if len(run) > 3 else None
         chord = run[-1] - run[0]
         size = float(np.hypot(*chord))
-        if apex is not None and abs(across(chord, apex - run[0])) <= 2 * safe * size:
+        if apex is not None and abs(compute_cross_product(chord, apex - run[0])) <= 2 * safe * size:
             along = float(chord @ (apex - run[0]))
             run = np.array([run[0], apex, run[-1]]) if 0.0 < along < size * size else run
         kept.append(run[:-1])
     return np.concatenate(kept)
 
 
-def across(a: Array, b: Array) -> float:
-    """The cross product of two vectors (2,)."""
+def compute_cross_product(a: Array, b: Array) -> float:
+    """Return the cross product of two vectors (2,)."""
     return float(a[0] * b[1] - a[1] * b[0])
 
 
-def crossing_of(a: Array, b: Array, c: Array, d: Array) -> Array | None:
-    """Where the line through two points crosses that through two others; None of parallel ones."""
+def intersect_lines(a: Array, b: Array, c: Array, d: Array) -> Array | None:
+    """Return where the line through two points crosses that through two others; None of parallel ones."""
     one, other = b - a, d - c
-    turn = across(one, other)
+    turn = compute_cross_product(one, other)
     if abs(turn) <= SHORTEST * float(np.hypot(*one) * np.hypot(*other)):
         return None
-    return np.asarray(a + one * across(c - a, other) / turn)
+    return np.asarray(a + one * compute_cross_product(c - a, other) / turn)
 
 
-def near_pieces(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
-    """Control points (N, 2) of runs of a curve in running order, each near to its chord and ahead along it.
+def split_near_chords(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
+    """Yield the control points (N, 2) of runs of a curve in running order, each near to its chord and ahead
+    along it.
 
     They may be ``safe`` mm from the chord. Refuses a curve that takes too many.
     """
     run: Array | None = None
-    for control in small_pieces(pieces, safe):
+    for control in split_each_piece(pieces, safe):
         longer = control if run is None else np.concatenate([run, control[1:]])
         if run is not None and not is_near_chord(longer, safe):
             yield run
@@ -165,7 +169,7 @@ def near_pieces(pieces: Pieces, safe: float = SAFE) -> Iterator[Array]:
 
 
 def is_near_chord(control: Array, safe: float) -> bool:
-    """Whether points (N, 2) are near to the chord of the first and the last, and run ahead along it."""
+    """Return whether points (N, 2) are near to the chord of the first and the last, and run ahead along it."""
     chord = control[-1] - control[0]
     size = hypot(*chord)
     if size <= SHORTEST:
@@ -175,8 +179,8 @@ def is_near_chord(control: Array, safe: float) -> bool:
     return bool(off.max() <= safe and (np.diff(along) >= 0.0).all())
 
 
-def small_pieces(pieces: Pieces, safe: float) -> Iterator[Array]:
-    """As :func:`near_pieces`, of each of a curve's pieces by itself."""
+def split_each_piece(pieces: Pieces, safe: float) -> Iterator[Array]:
+    """Yield what :func:`split_near_chords` yields, for each piece of a curve by itself."""
     waiting, found = [pieces[k : k + 1] for k in reversed(range(len(pieces)))], 0
     while waiting:
         piece = waiting.pop()
@@ -192,7 +196,7 @@ def small_pieces(pieces: Pieces, safe: float) -> Iterator[Array]:
         waiting += [cut(piece, 0.5, 1.0), cut(piece, 0.0, 0.5)]
 
 
-def enclosed_curves(
+def enclose_curves(
     faces: Sequence[SolidFace],
     edges: Sequence[EdgeCurve],
     low: float,
@@ -201,19 +205,20 @@ def enclosed_curves(
     squares: Squares,
     is_there: Callable[[Point], bool],
 ) -> Enclosure:
-    """What holds the curves that are neither line nor arc of all that can bound a slab of a solid from above.
+    """Return what holds the curves that are neither line nor arc of all that can bound a slab of a solid from
+    above.
 
     The slab is between two z in mm. For ``folds_of`` see
-    :func:`workhold.files.step.projected.projected_curves`. The squares are those that hold the folds of
+    :func:`workhold.files.step.projected.list_projected_curves`. The squares are those that hold the folds of
     free-form faces, kept for other slabs. ``is_there`` says whether a point belongs to what is bounded; folds
     are only where some points around do. Refuses curves that take too many pieces.
     """
     boxes = list[Array]()
-    leaning = [*leaning_between(faces, low, high)]
+    leaning = [*list_leaning_faces_between(faces, low, high)]
     free = [k for k in leaning if any(isinstance(one, np.ndarray) for one in folds_of(k))]
     size = BOX * max(1.0, len(free) / FEW)
     # Two faces have an edge, and it is enclosed once.
-    others = {id(one.curve): one for one in bounding_edges(faces, edges, low, high) if one.is_other}
+    others = {id(one.curve): one for one in list_bounding_edges(faces, edges, low, high) if one.is_other}
     curves: list[tuple[Any, Array | None]] = [
         (one.curve.Edge(), one.points[:, :2]) for one in others.values()
     ]
@@ -221,13 +226,15 @@ def enclosed_curves(
         face = faces[index]
         if index in free:
             if (index, size) not in squares:
-                squares[index, size] = fold_squares(surface_of(face.shape), size)
+                squares[index, size] = fold_squares(find_surface(face.shape), size)
             boxes += fold_boxes(squares[index, size], size, is_there)
         for z in (low, high):
-            if face.low < z < face.high and any(isinstance(one, np.ndarray) for one in level_cuts(face, z)):
+            if face.low < z < face.high and any(
+                isinstance(one, np.ndarray) for one in cut_face_at_height(face, z)
+            ):
                 plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
                 section = occ.BRepAlgoAPI_Section(face.shape, plane)
-                curves += [(edge, None) for edge in sub_shapes(section.Shape(), "EDGE")]
+                curves += [(edge, None) for edge in list_sub_shapes(section.Shape(), "EDGE")]
     safe = SAFE
     for _ in range(AGAIN):
         found = Enclosure()
@@ -243,7 +250,7 @@ def enclosed_curves(
 
 
 def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
-    """Whether something is on one side of a convex polygon and not on another."""
+    """Return whether something is on one side of a convex polygon and not on another."""
     corners = np.concatenate([polygon, (polygon + np.roll(polygon, -1, axis=0)) / 2])
     away = corners - polygon.mean(axis=0)
     size = np.hypot(*away.T)[:, None]
@@ -253,36 +260,37 @@ def is_beside_some(polygon: Array, is_there: Callable[[Point], bool]) -> bool:
 
 
 def enclose_edge(found: Enclosure, edge: Any, points: Array | None, safe: float) -> None:
-    """Adds what holds an edge.
+    """Add what holds an edge.
 
     Boxes are made of points (N, 2) along it where the library knows no curve of the edge. For ``safe`` see
-    :func:`near_pieces`.
+    :func:`split_near_chords`.
     """
     try:
-        pieces = edge_curve(edge)
+        pieces = convert_edge_to_pieces(edge)
     except InputError:
         if points is None:
             raise
         for start, end in pairwise(points):
             wide = 0.5 * float(np.hypot(*(end - start))) + SAFE
             low, high = np.minimum(start, end) - wide, np.maximum(start, end) + wide
-            found.polygons.append(np.array(corners_of(low, high)))
+            found.polygons.append(np.array(list_box_corners(low, high)))
         return
-    for control in near_pieces(pieces, safe):
+    for control in split_near_chords(pieces, safe):
         found.add_points(((float(x), float(y)) for x, y in control), safe)
 
 
-def corners_of(low: Array, high: Array) -> list[Point]:
-    """The corners of a box, counter-clockwise."""
+def list_box_corners(low: Array, high: Array) -> list[Point]:
+    """Return the corners of a box, counter-clockwise."""
     (x0, y0), (x1, y1) = low.tolist(), high.tolist()
     return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
 
 
 def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[Point], bool]) -> list[Array]:
-    """Boxes that hold a fold where there is something at it: rows of squares, larger ones of a long fold.
+    """Return the boxes that hold a fold where there is something at it: rows of squares, larger ones of a
+    long fold.
 
     The squares of a raster that hold it are given by column and row, their size is in mm. For ``is_there``
-    see :func:`enclosed_curves`.
+    see :func:`enclose_curves`.
     """
     while len(squares) > MOST_SQUARES:
         size *= 2.0
@@ -308,13 +316,13 @@ def fold_boxes(squares: set[tuple[int, int]], size: float, is_there: Callable[[P
         else:
             rows.append([j, i, i + 1])
     return [
-        np.array(corners_of(np.array([first, j]) * size, np.array([last, j + 1]) * size))
+        np.array(list_box_corners(np.array([first, j]) * size, np.array([last, j + 1]) * size))
         for j, first, last in rows
     ]
 
 
 def fold_squares(surface: Any, size: float) -> set[tuple[int, int]]:
-    """The squares of a raster, by column and row, in which a surface may stand upright, seen from above."""
+    """Return the squares of a raster, by column and row, in which a surface may stand upright, seen from above."""
     u = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), CELLS + 1)
     v = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), CELLS + 1)
     waiting = [(u0, u1, v0, v1, 0) for u0, u1 in pairwise(u.tolist()) for v0, v1 in pairwise(v.tolist())]
@@ -322,7 +330,7 @@ def fold_squares(surface: Any, size: float) -> set[tuple[int, int]]:
     while waiting:
         u0, u1, v0, v1, level = waiting.pop()
         places = [(a, b) for a in (u0, (u0 + u1) / 2, u1) for b in (v0, (v0 + v1) / 2, v1)]
-        leans = [normal_height(surface, a, b) for a, b in places]
+        leans = [compute_normal_height(surface, a, b) for a, b in places]
         if min(leans) > 0.0 or max(leans) < 0.0:
             continue
         values = [surface.Value(a, b) for a, b in places]

@@ -23,7 +23,7 @@ from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.conventions import ALIGNED, SAME_HEIGHT
-from workhold.files.step.library import bounding_box, occ, sub_shapes
+from workhold.files.step.library import compute_bounding_box, list_sub_shapes, occ
 from workhold.geometry.subdivision import sort_distinct
 
 __all__ = [
@@ -32,12 +32,12 @@ __all__ = [
     "SolidFace",
     "is_level",
     "is_upright",
-    "layers_of",
-    "lie_of",
-    "plane_height",
-    "solid_faces",
-    "surface_of",
-    "surface_points",
+    "make_layers",
+    "classify_lie",
+    "compute_plane_height",
+    "list_solid_faces",
+    "find_surface",
+    "sample_surface_points",
 ]
 
 # Points along an edge, and along each direction of a curved face, by which a departure is measured.
@@ -92,27 +92,27 @@ class Layer:
         return (self.low + self.high) / 2
 
 
-def solid_faces(shape: Any) -> list[SolidFace]:
-    """Every face of a solid whose axis points up."""
-    return [solid_face(face) for face in sub_shapes(shape, "FACE")]
+def list_solid_faces(shape: Any) -> list[SolidFace]:
+    """Return every face of a solid whose axis points up."""
+    return [make_solid_face(face) for face in list_sub_shapes(shape, "FACE")]
 
 
-def solid_face(face: Any) -> SolidFace:
-    low, high = bounding_box(face)
-    written, surface = occ.BRepAdaptor_Surface(face), surface_of(face)
-    lie = lie_of(surface, 2)
+def make_solid_face(face: Any) -> SolidFace:
+    low, high = compute_bounding_box(face)
+    written, surface = occ.BRepAdaptor_Surface(face), find_surface(face)
+    lie = classify_lie(surface, 2)
     bottom, top = low[2], high[2]
-    if (z := plane_height(surface)) is not None:
+    if (z := compute_plane_height(surface)) is not None:
         bottom = top = z
     fold = fold_of(surface) if lie == "leaning" else None
     upward = False
     if lie == "level":
         turned = face.Orientation() == occ.TopAbs_REVERSED
-        upward = (sampled_normals(written)[0].Z() > 0) != turned
+        upward = (sample_normals(written)[0].Z() > 0) != turned
     return SolidFace(
         face,
         lie,
-        kind_of(surface, lie),
+        describe_face_kind(surface, lie),
         bottom,
         top,
         fold,
@@ -129,8 +129,8 @@ def solid_face(face: Any) -> SolidFace:
     )
 
 
-def surface_of(face: Any) -> Any:
-    """The surface of a face as the library's adaptor; a spline that is a plane or a quadric as that.
+def find_surface(face: Any) -> Any:
+    """Return the surface of a face as the library's adaptor; a spline that is a plane or a quadric as that.
 
     Some programs write every surface as a spline. Of what is found the bounds are those of the face's box, at
     least: more of it does no harm where folds and cuts are looked for.
@@ -150,68 +150,68 @@ def surface_of(face: Any) -> Any:
     kind = quadric.GetType()
     if kind == occ.GeomAbs_Plane:
         place = quadric.Plane().Position()
-        across = span_along(place, place.XDirection(), face)
-        return occ.GeomAdaptor_Surface(found, *across, *span_along(place, place.YDirection(), face))
+        across = measure_span_along(place, place.XDirection(), face)
+        return occ.GeomAdaptor_Surface(found, *across, *measure_span_along(place, place.YDirection(), face))
     if kind in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
         place = (quadric.Cylinder() if kind == occ.GeomAbs_Cylinder else quadric.Cone()).Position()
-        return occ.GeomAdaptor_Surface(found, 0.0, tau, *span_along(place, place.Direction(), face))
+        return occ.GeomAdaptor_Surface(found, 0.0, tau, *measure_span_along(place, place.Direction(), face))
     return quadric
 
 
-def span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
-    """How far a face's box reaches along a direction from a place, at least and at most."""
+def measure_span_along(place: Any, direction: Any, face: Any) -> tuple[float, float]:
+    """Return how far a face's box reaches along a direction from a place, at least and at most."""
     start = place.Location()
     along = [
         (x - start.X()) * direction.X() + (y - start.Y()) * direction.Y() + (z - start.Z()) * direction.Z()
-        for x, y, z in product(*zip(*bounding_box(face), strict=True))
+        for x, y, z in product(*zip(*compute_bounding_box(face), strict=True))
     ]
     return min(along), max(along)
 
 
-def plane_height(surface: Any) -> float | None:
-    """The z in mm of a level plane, without what the library adds to a box; None for any other surface."""
-    if surface.GetType() != occ.GeomAbs_Plane or lie_of(surface, 2) != "level":
+def compute_plane_height(surface: Any) -> float | None:
+    """Return the z in mm of a level plane, without what the library adds to a box; None for any other surface."""
+    if surface.GetType() != occ.GeomAbs_Plane or classify_lie(surface, 2) != "level":
         return None
     # The middle of the face, because a plane that is level but for rounding is higher far from it.
     u, v = (surface.FirstUParameter() + surface.LastUParameter()) / 2, surface.FirstVParameter()
     return float(surface.Value(u, (v + surface.LastVParameter()) / 2).Z())
 
 
-def lie_of(surface: Any, axis: int) -> Lie:
-    """How a surface lies to the axis of number 0 (x), 1 (y) or 2 (z)."""
+def classify_lie(surface: Any, axis: int) -> Lie:
+    """Return how a surface lies to the axis of number 0 (x), 1 (y) or 2 (z)."""
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
-        inward, across = components(surface.Plane().Axis().Direction(), axis)
+        inward, across = split_direction(surface.Plane().Axis().Direction(), axis)
         return "level" if across <= ALIGNED else "upright" if inward <= ALIGNED else "leaning"
     if kind == occ.GeomAbs_Cylinder:
-        _, across = components(surface.Cylinder().Axis().Direction(), axis)
+        _, across = split_direction(surface.Cylinder().Axis().Direction(), axis)
         return "upright" if across <= ALIGNED else "leaning"
     if kind in (occ.GeomAbs_Cone, occ.GeomAbs_Sphere, occ.GeomAbs_Torus):
         return "leaning"
-    slopes = [components(normal, axis) for normal in sampled_normals(surface)]
+    slopes = [split_direction(normal, axis) for normal in sample_normals(surface)]
     if not slopes:
         return "leaning"
     inward, across = (max(values) for values in zip(*slopes, strict=True))
     return "level" if across <= ALIGNED else "upright" if inward <= ALIGNED else "leaning"
 
 
-def components(direction: Any, axis: int) -> tuple[float, float]:
-    """Sizes of a unit vector's part along an axis and of its part across."""
+def split_direction(direction: Any, axis: int) -> tuple[float, float]:
+    """Return the sizes of a unit vector's part along an axis and of its part across."""
     values = [direction.X(), direction.Y(), direction.Z()]
     inward = values.pop(axis)
     return abs(inward), hypot(*values)
 
 
-def grid(surface: Any) -> Iterator[tuple[float, float]]:
+def make_parameter_grid(surface: Any) -> Iterator[tuple[float, float]]:
     us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), GRID_POINTS)
     vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), GRID_POINTS)
     return product(us.tolist(), vs.tolist())
 
 
-def sampled_normals(surface: Any) -> list[Any]:
-    """Unit normals of a surface at a grid of points, without those where it has none."""
+def sample_normals(surface: Any) -> list[Any]:
+    """Return the unit normals of a surface at a grid of points, without those where it has none."""
     normals = []
-    for u, v in grid(surface):
+    for u, v in make_parameter_grid(surface):
         point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
         surface.D1(u, v, point, along_u, along_v)
         normal = along_u.Crossed(along_v)
@@ -220,8 +220,8 @@ def sampled_normals(surface: Any) -> list[Any]:
     return normals
 
 
-def kind_of(surface: Any, lie: Lie) -> str:
-    """A face in words, in the singular."""
+def describe_face_kind(surface: Any, lie: Lie) -> str:
+    """Return a face in words, in the singular."""
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
         return {"level": "level plane", "upright": "wall", "leaning": SLOPING}[lie]
@@ -231,7 +231,7 @@ def kind_of(surface: Any, lie: Lie) -> str:
             f"round wall of radius {surface.Cylinder().Radius():.6g} mm" if round_wall else "free-form wall"
         )
     if kind == occ.GeomAbs_Cylinder:
-        along_axis, _ = components(surface.Cylinder().Axis().Direction(), 2)
+        along_axis, _ = split_direction(surface.Cylinder().Axis().Direction(), 2)
         lies = "across" if along_axis < 1e-6 else "aslant"
         return f"cylinder of radius {surface.Cylinder().Radius():.6g} mm {lies}"
     names = {occ.GeomAbs_Cone: "cone", occ.GeomAbs_Sphere: "sphere", occ.GeomAbs_Torus: "rounded rim"}
@@ -239,17 +239,17 @@ def kind_of(surface: Any, lie: Lie) -> str:
 
 
 def is_upright(axis: Any) -> bool:
-    """Whether an axis of the library is parallel to z."""
-    return components(axis.Direction(), 2)[1] <= ALIGNED
+    """Return whether an axis of the library is parallel to z."""
+    return split_direction(axis.Direction(), 2)[1] <= ALIGNED
 
 
 def is_level(axis: Any) -> bool:
-    """Whether an axis of the library is square to z."""
-    return components(axis.Direction(), 2)[0] <= ALIGNED
+    """Return whether an axis of the library is square to z."""
+    return split_direction(axis.Direction(), 2)[0] <= ALIGNED
 
 
 def fold_of(surface: Any) -> float | None:
-    """The height at which a leaning surface stands upright all along a horizontal line.
+    """Return the height at which a leaning surface stands upright all along a horizontal line.
 
     It is the equator of a sphere, an upright torus or a lying cylinder.
     """
@@ -263,8 +263,8 @@ def fold_of(surface: Any) -> float | None:
     return None
 
 
-def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
-    """The layers between the heights where level and leaning faces begin or end, from the lowest up."""
+def make_layers(faces: Sequence[SolidFace]) -> list[Layer]:
+    """Return the layers between the heights where level and leaning faces begin or end, from the lowest up."""
     leaning = np.array([(face.low, face.high) for face in faces if face.lie == "leaning"]).reshape(-1, 2)
     ends = [z for face in faces if face.lie != "upright" for z in (face.low, face.high)]
     levels = sort_distinct(np.array(ends), SAME_HEIGHT)
@@ -275,10 +275,10 @@ def layers_of(faces: Sequence[SolidFace]) -> list[Layer]:
     return layers
 
 
-def surface_points(face: SolidFace) -> NDArray[np.float64]:
-    """(N, 2) points (x, y) of a face: along its edges, and all over it when it is curved and leans."""
+def sample_surface_points(face: SolidFace) -> NDArray[np.float64]:
+    """Return (N, 2) points (x, y) of a face: along its edges, and all over it when it is curved and leans."""
     points = []
-    for edge in sub_shapes(face.shape, "EDGE"):
+    for edge in list_sub_shapes(face.shape, "EDGE"):
         curve = occ.BRepAdaptor_Curve(edge)
         points += [
             curve.Value(float(t))
@@ -288,7 +288,7 @@ def surface_points(face: SolidFace) -> NDArray[np.float64]:
     if face.lie == "leaning" and surface.GetType() != occ.GeomAbs_Plane:
         points += [
             surface.Value(u, v)
-            for u, v in grid(surface)
+            for u, v in make_parameter_grid(surface)
             if occ.BRepClass_FaceClassifier(face.shape, occ.gp_Pnt2d(u, v), 1e-7).State() == occ.TopAbs_IN
         ]
     return np.array([(point.X(), point.Y()) for point in points]).reshape(-1, 2)

@@ -26,22 +26,22 @@ from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT, SECTION
 from workhold.files.step.bands import KnownWalls, Walls
-from workhold.files.step.edge_curves import EdgeCurve, Found, edge_curves
-from workhold.files.step.faces import SolidFace, plane_height, solid_faces
-from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
+from workhold.files.step.edge_curves import EdgeCurve, Found, list_edge_curves
+from workhold.files.step.faces import SolidFace, compute_plane_height, list_solid_faces
+from workhold.files.step.library import compute_bounding_box, list_sub_shapes, occ, raise_shape
 from workhold.files.step.material import Material
 from workhold.files.step.projected import (
     FLAT,
     OtherCurveError,
     PlainCurves,
     ProjectedCurves,
-    folds,
+    cut_face_at_height,
+    find_folds,
     has_plain_cuts,
-    level_cuts,
-    projected_curves,
+    list_projected_curves,
     refuse_others,
 )
-from workhold.files.step.strips import Strip, run_rows, strips_of_loop
+from workhold.files.step.strips import Strip, make_strips, run_rows
 from workhold.geometry.loop import compute_signed_area, loop_segments
 from workhold.geometry.segment import Arc, Line, Segment, are_parallel_lines
 from workhold.geometry.subdivision import (
@@ -59,12 +59,12 @@ __all__ = [
     "HeightOutline",
     "OwnDrawing",
     "StandingSolid",
-    "advice",
-    "height_remarks",
-    "height_table",
-    "measures",
-    "own_drawings",
-    "standing",
+    "advise_on_height",
+    "describe_outline_by_height",
+    "tabulate_peg_heights",
+    "measure_outline",
+    "draw_own_outlines",
+    "stand_solid",
 ]
 
 # What is kept free above the pegs, and the shortest band that may be touched, both in mm.
@@ -89,12 +89,14 @@ class HeightOutline:
     @cached_property
     def ordered(self) -> list[tuple[Strip, ...]]:
         """Outer loops first, the largest of them before all."""
-        return sorted(self.loops, key=lambda loop: -compute_signed_area(loop_segments(vertices_of(loop))))
+        return sorted(
+            self.loops, key=lambda loop: -compute_signed_area(loop_segments(collect_vertices(loop)))
+        )
 
     @property
     def vertices(self) -> tuple[NDArray[np.float64], ...]:
         """Vertices (N, 3) in mm of each loop, in order."""
-        return tuple(vertices_of(loop) for loop in self.ordered)
+        return tuple(collect_vertices(loop) for loop in self.ordered)
 
     @property
     def bands(self) -> tuple[Band | None, ...]:
@@ -118,8 +120,8 @@ class HeightOutline:
         return sum(compute_signed_area(loop_segments(loop)) > 0 for loop in self.vertices)
 
 
-def vertices_of(loop: Sequence[Any]) -> NDArray[np.float64]:
-    """Vertices (N, 3) of a loop of strips, each running to the next."""
+def collect_vertices(loop: Sequence[Any]) -> NDArray[np.float64]:
+    """Return the vertices (N, 3) of a loop of strips, each running to the next."""
     return np.array([(*strip.start, strip.bulge) for strip in loop])
 
 
@@ -149,8 +151,8 @@ class StandingSolid:
     suspect: SolidFace | None = field(init=False, default=None)
 
     def __attrs_post_init__(self) -> None:
-        self.faces = solid_faces(self.shape)
-        self.edges = edge_curves(self.faces)
+        self.faces = list_solid_faces(self.shape)
+        self.edges = list_edge_curves(self.faces)
         ends = [(edge.points.min(axis=0), edge.points.max(axis=0)) for edge in self.edges]
         self.edge_boxes = np.array([(*low[:2], *high[:2], high[2]) for low, high in ends]).reshape(-1, 5)
         self.material = Material(self.shape, self.faces, self.edges)
@@ -167,16 +169,16 @@ class StandingSolid:
         """Lines and arcs that may be the border of outlines of every height."""
         edges = [edge.segment for edge in self.edges if edge.segment is not None]
         leaning = [index for index, face in enumerate(self.faces) if face.lie == "leaning"]
-        every = [one for index in leaning for one in self.folds_of(index)]
-        return PlainCurves.of([*edges, *(one for one in every if isinstance(one, Line | Arc))])
+        every = [one for index in leaning for one in self.find_folds_of_face(index)]
+        return PlainCurves.from_segments([*edges, *(one for one in every if isinstance(one, Line | Arc))])
 
-    def folds_of(self, index: int) -> list[Found]:
-        """Where the face of a number stands upright, seen from above; found once."""
+    def find_folds_of_face(self, index: int) -> list[Found]:
+        """Return where the face of a number stands upright, seen from above; found once."""
         if index not in self.folds:
-            self.folds[index] = folds(self.faces[index])
+            self.folds[index] = find_folds(self.faces[index])
         return self.folds[index]
 
-    def outline(
+    def make_outline(
         self,
         peg_height: float | None = None,
         head_room: float = HEAD_ROOM,
@@ -184,7 +186,7 @@ class StandingSolid:
         low: float = 0.0,
         silhouette: Sequence[Segment] = (),
     ) -> HeightOutline:
-        """The outline of pegs that reach from below up to a height, or from another height.
+        """Return the outline of pegs that reach from below up to a height, or from another height.
 
         Parameters
         ----------
@@ -203,47 +205,49 @@ class StandingSolid:
         key = top, head_room, least_band, low
         if not silhouette and key in self.known_outlines:
             return self.known_outlines[key]
-        walls = self.walls(top, low)
-        loops = self.border(low if low > 0.0 else -inf, top + head_room, walls, silhouette)
-        strips = tuple(tuple(strips_of_loop(loop, walls, least_band)) for loop in loops)
+        walls = self.make_walls(top, low)
+        loops = self.find_border(low if low > 0.0 else -inf, top + head_room, walls, silhouette)
+        strips = tuple(tuple(make_strips(loop, walls, least_band)) for loop in loops)
         outline = HeightOutline(strips, top, head_room, least_band)
         if not silhouette:
             self.known_outlines[key] = outline
         return outline
 
-    def walls(self, top: float, low: float = 0.0) -> Walls:
-        """The upright faces as pegs between two heights in mm meet them."""
+    def make_walls(self, top: float, low: float = 0.0) -> Walls:
+        """Return the upright faces as pegs between two heights in mm meet them."""
         return Walls(self.faces, self.edges, max(low, 0.0), min(top, self.height), self.known_walls)
 
-    def area(self, peg_height: float, head_room: float) -> float | None:
-        """The area in mm² of the outline of pegs that reach from below up to a height; None if it is refused."""
+    def measure_outline_area(self, peg_height: float, head_room: float) -> float | None:
+        """Return the area in mm² of the outline of pegs that reach from below up to a height; None if it is refused."""
         high = peg_height + head_room
         suspect = self.suspect
         try:
             if suspect is not None:
-                cuts = [one for one in level_cuts(suspect, high) if not isinstance(one, Line | Arc)]
-                refuse_others([(0, one) for one in cuts], [suspect], self.inside(-1.0, high), self.plain)
-            loops = self.border(-inf, high, self.walls(peg_height))
+                cuts = [one for one in cut_face_at_height(suspect, high) if not isinstance(one, Line | Arc)]
+                refuse_others(
+                    [(0, one) for one in cuts], [suspect], self.make_inside_test(-1.0, high), self.plain
+                )
+            loops = self.find_border(-inf, high, self.make_walls(peg_height))
         except OtherCurveError as error:
             self.suspect = error.face
             return None
         except InputError:
             return None
-        return sum(compute_signed_area(loop_segments(vertices_of(loop))) for loop in loops)
+        return sum(compute_signed_area(loop_segments(collect_vertices(loop))) for loop in loops)
 
-    def inside(self, low: float, high: float) -> Inside:
-        """Over which of some points (x, y) the solid has material between two heights in mm, as a function."""
-        return lambda points: self.material.reaches_into(points, low, high)
+    def make_inside_test(self, low: float, high: float) -> Inside:
+        """Return a function that says over which points (x, y) the solid has material between two heights in mm."""
+        return lambda points: self.material.lies_between(points, low, high)
 
-    def border(
+    def find_border(
         self, low: float, high: float, walls: Walls | None = None, silhouette: Sequence[Segment] = ()
     ) -> list[list[BorderPiece]]:
-        """The loops of U(low, high), heights in mm.
+        """Return the loops of U(low, high), heights in mm.
 
         Parameters
         ----------
         walls : whose runs cut it too.
-        silhouette : see :meth:`outline`.
+        silhouette : see :meth:`make_outline`.
 
         Raises
         ------
@@ -251,13 +255,15 @@ class StandingSolid:
             Naming the face whose border is neither line nor arc.
         """
         low, high = max(low, -1.0), min(high, self.height + 1.0)
-        inside = self.inside(low, high)
-        more = walls.cuts() if walls else []
+        inside = self.make_inside_test(low, high)
+        more = walls.find_cut_points() if walls else []
         if silhouette:
-            curves = ProjectedCurves(tuple(silhouette), tuple(walls.ends() if walls else ()), ())
+            curves = ProjectedCurves(
+                tuple(silhouette), tuple(walls.find_level_edge_ends() if walls else ()), ()
+            )
         else:
-            curves = projected_curves(self.faces, self.edges, low, high, self.folds_of)
-            refuse_others(curves.others, self.faces, inside, PlainCurves.of(curves.segments))
+            curves = list_projected_curves(self.faces, self.edges, low, high, self.find_folds_of_face)
+            refuse_others(curves.others, self.faces, inside, PlainCurves.from_segments(curves.segments))
         carriers = subdivide(curves.segments, (*curves.cuts, *more))
         pieces = find_border_pieces(carriers, inside)
         if not pieces:
@@ -265,13 +271,13 @@ class StandingSolid:
                 f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
             )
         try:
-            return self.closed(pieces, curves)
+            return self.close_loops(pieces, curves)
         except InputError:
             # A cut this near to a corner has sides too narrow to be looked at, and is one with the cut through it.
             corner = float(self.corners[np.abs(self.corners - high).argmin()])
             if curves.others or silhouette or not 0.0 < abs(corner - high) <= SAME_HEIGHT:
                 raise
-        return self.border(low, corner, walls)
+        return self.find_border(low, corner, walls)
 
     @cached_property
     def corners(self) -> NDArray[np.float64]:
@@ -279,8 +285,8 @@ class StandingSolid:
         ends = [(*edge.points[[0, -1], 2].tolist(), edge.low, edge.high) for edge in self.edges]
         return np.unique(np.array(ends, np.float64))
 
-    def closed(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
-        """The loops of a border's pieces.
+    def close_loops(self, pieces: Sequence[BorderPiece], curves: ProjectedCurves) -> list[list[BorderPiece]]:
+        """Return the loops of a border's pieces.
 
         Raises
         ------
@@ -296,25 +302,26 @@ class StandingSolid:
             raise
 
 
-def standing(shape: Any, low: float | None = None) -> StandingSolid:
-    """A solid moved so that its lowest point is at height 0, and turned right side out.
+def stand_solid(shape: Any, low: float | None = None) -> StandingSolid:
+    """Return a solid moved so that its lowest point is at height 0, and turned right side out.
 
     ``low`` is z in mm of its bounding box, where that is known.
     """
-    shape = sub_shapes(shape, "SOLID")[0]
+    shape = list_sub_shapes(shape, "SOLID")[0]
     occ.BRepLib.OrientClosedSolid_s(shape)
-    return StandingSolid(raised(shape, -foot_height(shape, low)))
+    return StandingSolid(raise_shape(shape, -find_foot_height(shape, low)))
 
 
-def foot_height(shape: Any, low: float | None = None) -> float:
-    """The height of a shape's lowest point in mm, with the very number of a level face that lies there.
+def find_foot_height(shape: Any, low: float | None = None) -> float:
+    """Return the height of a shape's lowest point in mm, with the very number of a level face that lies
+    there.
 
     Parameters
     ----------
-    low : see :func:`standing`.
+    low : see :func:`stand_solid`.
     """
-    low = bounding_box(shape)[0][2] if low is None else low
-    level = [plane_height(occ.BRepAdaptor_Surface(face)) for face in sub_shapes(shape, "FACE")]
+    low = compute_bounding_box(shape)[0][2] if low is None else low
+    level = [compute_plane_height(occ.BRepAdaptor_Surface(face)) for face in list_sub_shapes(shape, "FACE")]
     return min((z for z in level if z is not None and z - low <= SAME_HEIGHT), default=low)
 
 
@@ -329,12 +336,12 @@ PROBES, BEFORE = 8, 1e-3
 WHOLE = 1e-9
 
 
-def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
-    """Area, border, touchable border and shortest band of an outline, in mm² and mm."""
+def measure_outline(outline: HeightOutline) -> tuple[float, float, float, float]:
+    """Return the area, border, touchable border and shortest band of an outline, in mm² and mm."""
     border = touchable = area = 0.0
     bands = []
     for loop in outline.loops:
-        segments = loop_segments(vertices_of(loop))
+        segments = loop_segments(collect_vertices(loop))
         area += compute_signed_area(segments)
         border += sum(segment.length for segment in segments)
         for segment, strip in zip(segments, loop, strict=True):
@@ -344,18 +351,19 @@ def measures(outline: HeightOutline) -> tuple[float, float, float, float]:
     return area, border, touchable, min(bands, default=0.0)
 
 
-def slides_along(outline: HeightOutline) -> bool:
-    """Whether all that may be touched of an outline are lines parallel to one another."""
+def is_parallel_only(outline: HeightOutline) -> bool:
+    """Return whether all that may be touched of an outline are lines parallel to one another."""
     strips = [
         (segment, strip)
         for loop in outline.loops
-        for segment, strip in zip(loop_segments(vertices_of(loop)), loop, strict=True)
+        for segment, strip in zip(loop_segments(collect_vertices(loop)), loop, strict=True)
     ]
     return are_parallel_lines(segment for segment, strip in strips if strip.band is not None)
 
 
-def height_table(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
-    """Ranges of peg heights with what their outlines offer, without those whose outline is refused.
+def tabulate_peg_heights(solid: StandingSolid, room: float, least: float) -> list[HeightRow]:
+    """Return the ranges of peg heights with what their outlines offer, without those whose outline is
+    refused.
 
     A range ends where a face begins or ends, or meets what is kept free above the pegs, and where a wall has
     come to be high enough to be touched.
@@ -368,7 +376,7 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
     if len(heights) > most:
         heights = [heights[round(k)] for k in np.linspace(0, len(heights) - 1, most)]
     rows: list[HeightRow] = []
-    whole = WholeOutline.of(solid, heights[-1], room, least) if heights else None
+    whole = WholeOutline.from_height(solid, heights[-1], room, least) if heights else None
     # What is less than the shortest band above the plane touches nothing.
     for low, high in pairwise([least, *heights]):
         is_whole = bool(whole and rows and rows[-1].high == low and whole.has_area(rows[-1].area))
@@ -377,14 +385,14 @@ def height_table(solid: StandingSolid, room: float, least: float) -> list[Height
             # Of one outline pegs that reach farther touch no less.
             rows[-1] = evolve(whole.row, low=rows[-1].low)
             break
-        for row in rows_between(solid, low, high, room, least, whole, is_whole):
+        for row in list_height_rows_between(solid, low, high, room, least, whole, is_whole):
             if rows and rows[-1].high == row.low and is_like(rows[-1], row):
                 rows[-1] = evolve(row, low=rows[-1].low)
                 continue
             # Just before a wall is high enough, all is as it was before.
             reached = [round(z + least, 6) for z in sorted(starts) if row.low < z + least - BEFORE < row.high]
             for height in reached if rows and rows[-1].touchable < row.touchable else ():
-                before = row_of(solid, row.low, height, room, least, BEFORE, border)
+                before = make_height_row(solid, row.low, height, room, least, BEFORE, border)
                 if before is None or is_like(before, row):
                     continue
                 if rows and rows[-1].high == before.low and is_like(rows[-1], before):
@@ -410,24 +418,26 @@ class WholeOutline:
     border: tuple[Segment, ...]
 
     @classmethod
-    def of(cls, solid: StandingSolid, height: float, room: float, least: float) -> WholeOutline | None:
-        """The outline of pegs of a height in mm; None where it is refused."""
+    def from_height(
+        cls, solid: StandingSolid, height: float, room: float, least: float
+    ) -> WholeOutline | None:
+        """Return the outline of pegs of a height in mm; None where it is refused."""
         # Heights of the table are rounded, and that of the solid was most likely asked for before.
         asked = None if abs(height - solid.height) <= SAME_HEIGHT else height
         try:
-            outline = solid.outline(asked, room, least)
+            outline = solid.make_outline(asked, room, least)
         except InputError:
             return None
         pieces = [one for loop in outline.loops for strip in loop for one in strip.covered]
         border = tuple(one.piece.carrier.segment.part(one.low, one.high) for one in pieces)
-        return cls(HeightRow(0.0, height, *measures(outline), slides_along(outline)), border)
+        return cls(HeightRow(0.0, height, *measure_outline(outline), is_parallel_only(outline)), border)
 
     def has_area(self, area: float) -> bool:
-        """Whether an outline of some area in mm² is the whole of it."""
+        """Return whether an outline of some area in mm² is the whole of it."""
         return abs(self.row.area - area) <= WHOLE * self.row.area
 
 
-def row_of(
+def make_height_row(
     solid: StandingSolid,
     low: float,
     high: float,
@@ -436,18 +446,18 @@ def row_of(
     before: float = 0.0,
     border: Sequence[Segment] = (),
 ) -> HeightRow | None:
-    """The range between two heights, with what pegs touch of the upper one, or of one that much lower.
+    """Return the range between two heights, with what pegs touch of the upper one, or of one that much lower.
 
-    For the border see :meth:`StandingSolid.outline`.
+    For the border see :meth:`StandingSolid.make_outline`.
     """
     try:
-        outline = solid.outline(high - before, room, least, silhouette=border)
+        outline = solid.make_outline(high - before, room, least, silhouette=border)
     except InputError:
         return None
-    return HeightRow(low, high, *measures(outline), slides_along(outline))
+    return HeightRow(low, high, *measure_outline(outline), is_parallel_only(outline))
 
 
-def rows_between(
+def list_height_rows_between(
     solid: StandingSolid,
     low: float,
     high: float,
@@ -456,7 +466,7 @@ def rows_between(
     whole: WholeOutline | None,
     is_whole: bool,
 ) -> Iterator[HeightRow]:
-    """The ranges between two heights at which no face begins or ends, with what their outlines offer.
+    """Yield the ranges between two heights at which no face begins or ends, with what their outlines offer.
 
     A face that is cut in curves which are neither lines nor arcs may be refused over some of them.
     ``is_whole`` says whether the outline is known to be the silhouette at all heights between.
@@ -468,7 +478,9 @@ def rows_between(
         and not has_plain_cuts(face)
         for face in solid.faces
     ):
-        row = row_of(solid, low, high, room, least, border=whole.border if whole and is_whole else ())
+        row = make_height_row(
+            solid, low, high, room, least, border=whole.border if whole and is_whole else ()
+        )
         if row is not None:
             yield row
         return
@@ -478,7 +490,7 @@ def rows_between(
     places = [*ends, high]
     taken: list[bool] = []
     for place in places:
-        area = None if is_whole else solid.area(place, room)
+        area = None if is_whole else solid.measure_outline_area(place, room)
         is_whole = is_whole or bool(whole and area is not None and whole.has_area(area))
         taken.append(is_whole or area is not None)
     first = low if taken[0] else None
@@ -488,31 +500,33 @@ def rows_between(
         refused, read = (b, a) if one else (a, b)
         while abs(read - refused) > BEFORE:
             middle = (refused + read) / 2
-            if solid.area(middle, room) is None:
+            if solid.measure_outline_area(middle, room) is None:
                 refused = middle
             else:
                 read = middle
         if not one:
             first = read
         elif first is not None:
-            row = row_of(solid, first, read, room, least)
+            row = make_height_row(solid, first, read, room, least)
             if row is not None:
                 yield row
             first = None
     if taken[-1] and first is not None:
-        row = row_of(solid, first, high, room, least, border=whole.border if whole and is_whole else ())
+        row = make_height_row(
+            solid, first, high, room, least, border=whole.border if whole and is_whole else ()
+        )
         if row is not None:
             yield row
 
 
 def is_like(a: HeightRow, b: HeightRow) -> bool:
-    """Whether two ranges offer the same outline, as far as its figures show."""
+    """Return whether two ranges offer the same outline, as far as its figures show."""
     pairs = ((a.area, b.area), (a.border, b.border), (a.touchable, b.touchable))
     return all(abs(one - other) <= 1e-6 * max(one, 1.0) for one, other in pairs)
 
 
-def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
-    """The range with the longest touchable border; of equal ones that of the highest pegs."""
+def find_longest_row(rows: Sequence[HeightRow]) -> HeightRow | None:
+    """Return the range with the longest touchable border; of equal ones that of the highest pegs."""
     most = max((row.touchable for row in rows), default=0.0)
     return max(
         (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),
@@ -521,15 +535,17 @@ def longest(rows: Sequence[HeightRow]) -> HeightRow | None:
     )
 
 
-def advice(solid: StandingSolid, room: float, least: float) -> str:
-    best = longest(height_table(solid, room, least))
+def advise_on_height(solid: StandingSolid, room: float, least: float) -> str:
+    best = find_longest_row(tabulate_peg_heights(solid, room, least))
     if best is None:
         return f"give another axis, or {SECTION}"
     return f"give {PEG_HEIGHT} {best.high:.6g}mm, or another axis"
 
 
-def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]) -> list[str]:
-    _, border, touchable, band = measures(outline)
+def describe_outline_by_height(
+    outline: HeightOutline, found: SolidOutline, rows: Sequence[HeightRow]
+) -> list[str]:
+    _, border, touchable, band = measure_outline(outline)
     reach = (
         "pegs are taken to reach as high"
         if outline.peg_height == found.height
@@ -546,12 +562,12 @@ def height_remarks(outline: HeightOutline, found: SolidOutline, rows: Sequence[H
         )
     elif band < min(outline.peg_height, found.height) - SAME_HEIGHT:
         remarks.append(f"The shortest upright face on the outline is {band:.4g} mm high there.")
-    return [*remarks, *better_height(rows, touchable)]
+    return [*remarks, *suggest_better_height(rows, touchable)]
 
 
-def better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
-    """A sentence on the height of pegs that could touch most, if that is more than a length in mm."""
-    best = longest(rows)
+def suggest_better_height(rows: Sequence[HeightRow], touchable: float) -> list[str]:
+    """Return a sentence on the height of pegs that could touch most, if that is more than a length in mm."""
+    best = find_longest_row(rows)
     if best is None or slides_at_every_height(rows) or best.touchable <= touchable * (1 + 1e-6):
         return []
     return [f"With {PEG_HEIGHT} {best.high:.6g}mm most could be touched: {best.touchable:.4g} mm."]
@@ -566,10 +582,10 @@ class OwnDrawing:
     solid: SolidOutline
 
 
-def own_drawings(
+def draw_own_outlines(
     solid: StandingSolid, heights: Mapping[str, Sequence[float]], found: SolidOutline
 ) -> Iterator[OwnDrawing]:
-    """What carriers with heights of their own, in mm by role, meet.
+    """Yield what carriers with heights of their own, in mm by role, meet.
 
     ``found`` is the solid as all other pegs meet it. Refuses, naming the role, an outline that cannot be made
     or has nothing to touch.
@@ -582,7 +598,7 @@ def own_drawings(
                 f"of the {role} that begin below that."
             )
         try:
-            outline = solid.outline(high, found.head_room, found.least_band, low)
+            outline = solid.make_outline(high, found.head_room, found.least_band, low)
         except InputError as error:
             raise InputError(
                 f"{where}, {str(error).rstrip('.')}: give other heights of the {role}."

@@ -29,12 +29,12 @@ from workhold.conventions import ALIGNED, SAME_HEIGHT, SHORTEST
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Chain
-from workhold.files.outline.joining import closed_loop
-from workhold.files.step.enclosing import Enclosure, enclosed_curves, near_pieces
+from workhold.files.outline.joining import make_closed_loop
+from workhold.files.step.enclosing import Enclosure, enclose_curves, split_near_chords
 from workhold.files.step.faces import SolidFace
 from workhold.files.step.heights import StandingSolid
-from workhold.files.step.projected import projected_curves
-from workhold.files.step.regions import borders, level_region
+from workhold.files.step.projected import list_projected_curves
+from workhold.files.step.regions import make_level_region, trace_borders
 from workhold.geometry.loop import compute_signed_area, loop_segments, reverse_vertices
 from workhold.geometry.rational import Pieces, point_at, points_along
 from workhold.geometry.segment import (
@@ -48,7 +48,7 @@ from workhold.geometry.segment import (
 from workhold.geometry.subdivision import BorderPiece, find_border_pieces, join_border_loops, subdivide
 from workhold.kernels.base.distance import is_inside
 
-__all__ = ["LevelTop", "bottom_loops", "known_levels", "level_tops"]
+__all__ = ["LevelTop", "find_bottom_loops", "collect_level_faces", "find_open_level_tops"]
 
 Array = NDArray[np.float64]
 Box = tuple[float, float, float, float]
@@ -101,10 +101,10 @@ class FaceBorder:
         return not self.bounds.polygons
 
 
-def known_levels(solid: StandingSolid) -> dict[str, list[Any]]:
-    """The level faces of a solid by the names that ``SolidOutline`` has for them."""
-    found: dict[str, list[Any]] = {"bottom": [loop.tolist() for loop in bottom_loops(solid)]}
-    every = every_level_top(solid)
+def collect_level_faces(solid: StandingSolid) -> dict[str, list[Any]]:
+    """Return the level faces of a solid by the names that ``SolidOutline`` has for them."""
+    found: dict[str, list[Any]] = {"bottom": [loop.tolist() for loop in find_bottom_loops(solid)]}
+    every = find_level_tops(solid)
     tops = [top for top in every if top.open]
     found["unclear_heights"] = [top.height for top in every if top.is_unclear]
     for name, kind in (("top", "open"), ("rising", "rising"), ("hanging", "hanging")):
@@ -114,27 +114,27 @@ def known_levels(solid: StandingSolid) -> dict[str, list[Any]]:
     return found
 
 
-def bottom_loops(solid: StandingSolid) -> list[Array]:
-    """Loops (N, 3) of the faces on which the part lies: outer ones counter-clockwise, openings clockwise."""
-    return region_of_faces(lying_borders(solid))
+def find_bottom_loops(solid: StandingSolid) -> list[Array]:
+    """Return the loops (N, 3) of the faces on which the part lies: outer ones counter-clockwise, openings clockwise."""
+    return trace_region_of_faces(find_lying_borders(solid))
 
 
-def lying_borders(solid: StandingSolid) -> list[FaceBorder]:
+def find_lying_borders(solid: StandingSolid) -> list[FaceBorder]:
     return read_borders(
         [face for face in solid.faces if face.lie == "level" and not face.upward and face.low <= SAME_HEIGHT]
     )
 
 
-def level_tops(solid: StandingSolid) -> list[LevelTop]:
-    """The open parts of the level faces of a solid, by height in the order of its faces.
+def find_open_level_tops(solid: StandingSolid) -> list[LevelTop]:
+    """Return the open parts of the level faces of a solid, by height in the order of its faces.
 
     Faces of one height that lie side by side are one face; those of other heights stay faces of their own.
     """
-    return [top for top in every_level_top(solid) if top.open]
+    return [top for top in find_level_tops(solid) if top.open]
 
 
-def every_level_top(solid: StandingSolid) -> list[LevelTop]:
-    """The tops of :func:`level_tops`, with the heights at which nothing is open."""
+def find_level_tops(solid: StandingSolid) -> list[LevelTop]:
+    """Return the tops of :func:`find_open_level_tops`, with the heights at which nothing is open."""
     groups: list[list[SolidFace]] = []
     for face in solid.faces:
         if face.lie == "level" and face.upward:
@@ -143,95 +143,101 @@ def every_level_top(solid: StandingSolid) -> list[LevelTop]:
                 groups.append([face])
             else:
                 group.append(face)
-    lying, places = on_faces(lying_borders(solid)), Budget(LIMITS["tops"])
-    return [level_top(solid, group, lying, places) for group in groups]
+    lying, places = make_on_faces_test(find_lying_borders(solid)), Budget(LIMITS["tops"])
+    return [make_level_top(solid, group, lying, places) for group in groups]
 
 
-def level_top(
+def make_level_top(
     solid: StandingSolid, faces: Sequence[SolidFace], lies_on: Callable[[Point], bool], places: Budget
 ) -> LevelTop:
-    """What is open of some upper faces of one height, with what rises beside them, and what of them hangs.
+    """Return what is open of some upper faces of one height, with what rises beside them, and what of them
+    hangs.
 
     Nothing is open where what rises cannot be told, or takes more than may be asked. ``lies_on`` says whether
     a point is surely on a face on which the solid lies, ``places`` at how many it may still be asked what
     lies above and below.
     """
-    height, box = faces[0].low, box_around(faces)
+    height, box = faces[0].low, compute_box_around(faces)
     face_borders = read_borders(faces)
     nothing = LevelTop(height, [], [], [])
     above = [one for one in solid.faces if one.high > height + SAME_HEIGHT]
     try:
         if not above:
             bounds, rising = Enclosure(), list[Array]()
-            open_ = region_of_faces(face_borders)
+            open_ = trace_region_of_faces(face_borders)
         else:
-            is_on = on_faces(face_borders)
-            is_above = rises_above(solid, height, is_on, places)
-            bounds, cuts = bounds_between(solid, height, solid.height + 1.0, is_above)
-            rising = region(bounds.lines, lambda point: bounds.holds(point) or is_above(point), cuts)
+            is_on = make_on_faces_test(face_borders)
+            is_above = make_rises_above_test(solid, height, is_on, places)
+            bounds, cuts = find_bounds_between(solid, height, solid.height + 1.0, is_above)
+            rising = trace_region(bounds.lines, lambda point: bounds.may_hold(point) or is_above(point), cuts)
 
             def inside(point: Point) -> bool:
-                return is_on(point) and not bounds.holds(point) and not is_above(point)
+                return is_on(point) and not bounds.may_hold(point) and not is_above(point)
 
-            if any(overlap(one.box, box) for one in above):
-                open_ = region([*lines_of(face_borders), *lines_near(bounds, box)], inside)
+            if any(boxes_overlap(one.box, box) for one in above):
+                open_ = trace_region(
+                    [*list_border_segments(face_borders), *list_lines_near(bounds, box)], inside
+                )
             else:
-                open_ = region_of_faces(face_borders)
+                open_ = trace_region_of_faces(face_borders)
         if not open_:
             return nothing
-        return LevelTop(height, open_, rising, hanging_of(solid, open_, height, lies_on, places))
+        return LevelTop(height, open_, rising, find_hanging_loops(solid, open_, height, lies_on, places))
     except InputError:
         return LevelTop(height, [], [], [], is_unclear=True)
 
 
-def rises_above(
+def make_rises_above_test(
     solid: StandingSolid, height: float, is_on: Callable[[Point], bool], places: Budget
 ) -> Callable[[Point], bool]:
-    """Whether a solid has something above a height over a point, as a function.
+    """Return whether a solid has something above a height over a point, as a function.
 
     Beside its foot a fillet is hardly above the level face that it runs into. ``is_on`` says whether a point
-    is surely on a level face of that height; for ``places`` see :func:`level_top`.
+    is surely on a level face of that height; for ``places`` see :func:`make_level_top`.
     """
-    are_above = solid.inside(height, solid.height + 1.0)
+    are_above = solid.make_inside_test(height, solid.height + 1.0)
 
     def rises(point: Point) -> bool:
         places.spend()
         if are_above([point])[0]:
             return True
-        intervals = solid.material.intervals(point)
+        intervals = solid.material.find_material_intervals(point)
         return bool(intervals) and intervals[-1][1] > height + JUST_ABOVE and not is_on(point)
 
     return rises
 
 
-def bounds_between(
+def find_bounds_between(
     solid: StandingSolid, low: float, high: float, is_there: Callable[[Point], bool]
 ) -> tuple[Enclosure, list[tuple[Segment, Point]]]:
-    """What can bound a slab of a solid, seen from above, and points at which segments are to be cut besides.
+    """Return what can bound a slab of a solid, seen from above, and points at which segments are to be cut
+    besides.
 
     For ``is_there`` see :func:`enclosed_curves`.
     """
-    curves = projected_curves(solid.faces, solid.edges, low, high, solid.folds_of)
+    curves = list_projected_curves(solid.faces, solid.edges, low, high, solid.find_folds_of_face)
     bounds = Enclosure([*curves.segments])
     if curves.others:
         bounds.add(
-            enclosed_curves(solid.faces, solid.edges, low, high, solid.folds_of, solid.fold_squares, is_there)
+            enclose_curves(
+                solid.faces, solid.edges, low, high, solid.find_folds_of_face, solid.fold_squares, is_there
+            )
         )
     return bounds, [*curves.cuts]
 
 
-def hanging_of(
+def find_hanging_loops(
     solid: StandingSolid,
     open_: Sequence[Array],
     height: float,
     lies_on: Callable[[Point], bool],
     places: Budget,
 ) -> list[Array]:
-    """The loops of what hangs of the open parts of upper faces of one height.
+    """Return the loops of what hangs of the open parts of upper faces of one height.
 
-    For ``lies_on`` and ``places`` see :func:`level_top`. Refuses loops that do not close.
+    For ``lies_on`` and ``places`` see :func:`make_level_top`. Refuses loops that do not close.
     """
-    segments = segments_of(open_)
+    segments = make_segments(open_)
     boxes = np.array([bounding_box(one) for one in segments])
     box: Box = (*boxes[:, :2].min(axis=0).tolist(), *boxes[:, 2:].max(axis=0).tolist())
     below = (
@@ -241,33 +247,34 @@ def hanging_of(
         and one.low < height - SAME_HEIGHT
         and not (one.lie == "level" and not one.upward and one.low <= SAME_HEIGHT)
     )
-    if not any(overlap(one.box, box) for one in below):
+    if not any(boxes_overlap(one.box, box) for one in below):
         return []
     rows = segment_rows(segments)
 
     def reaches_down(point: Point) -> bool:
         places.spend()
-        intervals = solid.material.intervals(point)
+        intervals = solid.material.find_material_intervals(point)
         if not intervals or intervals[0][1] < height - SAME_HEIGHT:
             return False
         low = intervals[0][0]
         return low <= JUST_ABOVE or (low <= SAME_HEIGHT and lies_on(point))
 
-    bounds, cuts = bounds_between(solid, -1.0, height, lambda point: not reaches_down(point))
-    near = lines_near(bounds, box)
+    bounds, cuts = find_bounds_between(solid, -1.0, height, lambda point: not reaches_down(point))
+    near = list_lines_near(bounds, box)
 
     def hangs(point: Point) -> bool:
-        return is_inside(*point, rows) and (bounds.holds(point) or not reaches_down(point))
+        return is_inside(*point, rows) and (bounds.may_hold(point) or not reaches_down(point))
 
-    return region([*segments, *near], hangs, cuts)
+    return trace_region([*segments, *near], hangs, cuts)
 
 
-def region(
+def trace_region(
     segments: Sequence[Segment],
     inside: Callable[[Point], bool],
     cuts: Sequence[tuple[Segment, Point]] = (),
 ) -> list[Array]:
-    """Loops (N, 3) around a region, which lies on their left; outer ones first, the largest before all.
+    """Return the loops (N, 3) around a region, which lies on their left; outer ones first, the largest before
+    all.
 
     The segments hold all of its border, and ``inside`` says whether a point that lies on none of them belongs
     to it. Cuts are further points at which the carriers of segments are to be cut. Refuses a border that does
@@ -276,13 +283,13 @@ def region(
     pieces = find_border_pieces(
         subdivide(segments, cuts), lambda points: list(map(inside, points)), NEAR_BESIDE
     )
-    loops = [smoothed(loop) for loop in join_border_loops(pieces)]
+    loops = [merge_border_pieces(loop) for loop in join_border_loops(pieces)]
     sizes = [(compute_signed_area(loop_segments(loop)), loop) for loop in loops]
     return [loop for size, loop in sorted(sizes, key=lambda one: -one[0]) if abs(size) > SLIVER]
 
 
-def region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
-    """Loops (N, 3) of level faces of one height, without the edges along which they touch.
+def trace_region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
+    """Return the loops (N, 3) of level faces of one height, without the edges along which they touch.
 
     CAD programs split a face where a line was once imprinted on it. One face without curves stays as it is.
     """
@@ -290,31 +297,31 @@ def region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
         return face_borders[0].loops
     if not face_borders:
         return []
-    is_on = on_faces(face_borders)
+    is_on = make_on_faces_test(face_borders)
     try:
-        return region(lines_of(face_borders), is_on)
+        return trace_region(list_border_segments(face_borders), is_on)
     except InputError:
         return []
 
 
-def on_faces(face_borders: Sequence[FaceBorder]) -> Callable[[Point], bool]:
-    """Whether a point surely lies on one of some faces, as a function."""
-    rows = [segment_rows(segments_of(one.loops)) for one in face_borders]
+def make_on_faces_test(face_borders: Sequence[FaceBorder]) -> Callable[[Point], bool]:
+    """Return whether a point surely lies on one of some faces, as a function."""
+    rows = [segment_rows(make_segments(one.loops)) for one in face_borders]
     bounds = [one.bounds for one in face_borders]
 
     def is_on(point: Point) -> bool:
         # Curves along which two faces touch are lost, as polygons hold them on both sides.
-        return any(is_inside(*point, own) for own in rows) and not any(one.holds(point) for one in bounds)
+        return any(is_inside(*point, own) for own in rows) and not any(one.may_hold(point) for one in bounds)
 
     return is_on
 
 
-def lines_of(face_borders: Sequence[FaceBorder]) -> list[Segment]:
-    """The segments and the polygons' sides of some borders."""
+def list_border_segments(face_borders: Sequence[FaceBorder]) -> list[Segment]:
+    """Return the segments and the polygons' sides of some borders."""
     return [one for border in face_borders for one in border.bounds.lines]
 
 
-def lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
+def list_lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
     x0, y0, x1, y1 = box
     for one in bounds.lines:
         low_x, low_y, high_x, high_y = bounding_box(one)
@@ -322,57 +329,63 @@ def lines_near(bounds: Enclosure, box: Box) -> Iterator[Segment]:
             yield one
 
 
-def box_around(faces: Sequence[SolidFace]) -> Box:
-    """The box around some faces, seen from above."""
+def compute_box_around(faces: Sequence[SolidFace]) -> Box:
+    """Return the box around some faces, seen from above."""
     x0, y0, x1, y1 = np.array([face.box for face in faces]).T
     return float(x0.min()), float(y0.min()), float(x1.max()), float(y1.max())
 
 
-def overlap(a: Box, b: Box) -> bool:
-    """Whether two boxes have more than a border in common."""
+def boxes_overlap(a: Box, b: Box) -> bool:
+    """Return whether two boxes have more than a border in common."""
     return a[0] < b[2] - OFF and b[0] < a[2] - OFF and a[1] < b[3] - OFF and b[1] < a[3] - OFF
 
 
-def segments_of(loops: Sequence[Array]) -> list[Segment]:
+def make_segments(loops: Sequence[Array]) -> list[Segment]:
     return [segment for loop in loops for segment in loop_segments(loop)]
 
 
-def smoothed(loop: Sequence[BorderPiece]) -> Array:
-    """Vertices (N, 3) of a border's loop, where pieces that continue one line or half a circle are one."""
-    first = next((k for k in range(len(loop)) if not continues(loop[k - 1], loop[k])), 0)
+def merge_border_pieces(loop: Sequence[BorderPiece]) -> Array:
+    """Return the vertices (N, 3) of a border's loop, where pieces that continue one line or half a circle are one."""
+    first = next((k for k in range(len(loop)) if not continues_piece(loop[k - 1], loop[k])), 0)
     runs: list[list[BorderPiece]] = []
     for piece in [*loop[first:], *loop[:first]]:
-        if runs and continues(runs[-1][-1], piece) and sweep([*runs[-1], piece]) <= pi + ALIGNED:
+        if (
+            runs
+            and continues_piece(runs[-1][-1], piece)
+            and compute_sweep([*runs[-1], piece]) <= pi + ALIGNED
+        ):
             runs[-1].append(piece)
         else:
             runs.append([piece])
-    return np.array([(*run[0].start, tan(sweep(run) / 4) * (1 if run[0].forward else -1)) for run in runs])
+    return np.array(
+        [(*run[0].start, tan(compute_sweep(run) / 4) * (1 if run[0].forward else -1)) for run in runs]
+    )
 
 
-def continues(before: BorderPiece, after: BorderPiece) -> bool:
+def continues_piece(before: BorderPiece, after: BorderPiece) -> bool:
     return before.carrier is after.carrier
 
 
-def sweep(run: Sequence[BorderPiece]) -> float:
-    """The angle over which pieces of one circle run, in radians; 0 on a line."""
+def compute_sweep(run: Sequence[BorderPiece]) -> float:
+    """Return the angle over which pieces of one circle run, in radians; 0 on a line."""
     if isinstance(run[0].carrier.segment, Line):
         return 0.0
     return sum(piece.high - piece.low for piece in run)
 
 
 def read_borders(faces: Sequence[SolidFace]) -> list[FaceBorder]:
-    """The borders of level faces; without those that the library cannot tell."""
-    return [border for face in faces if (border := border_of(face)) is not None]
+    """Return the borders of level faces; without those that the library cannot tell."""
+    return [border for face in faces if (border := find_face_border(face)) is not None]
 
 
-def border_of(face: SolidFace) -> FaceBorder | None:
-    """The border of a level face; None where it cannot be read."""
+def find_face_border(face: SolidFace) -> FaceBorder | None:
+    """Return the border of a level face; None where it cannot be read."""
     try:
-        edges = borders(level_region(face.shape, face.low, face.upward))
+        edges = trace_borders(make_level_region(face.shape, face.low, face.upward))
         if not all(one.is_disguise for one in edges.curves.values()):
             # The section has curves of its own near the face's, which are exact.
-            edges = borders(face.shape)
-        chains = [closed_loop(chain).vertices for chain in edges.chains]
+            edges = trace_borders(face.shape)
+        chains = [make_closed_loop(chain).vertices for chain in edges.chains]
         order = sorted(range(len(chains)), key=lambda k: -abs(compute_signed_area(loop_segments(chains[k]))))
         true = {label: one.pieces for label, one in edges.curves.items() if not one.is_disguise}
         bounds, loops = Enclosure(), list[Array]()
@@ -381,7 +394,7 @@ def border_of(face: SolidFace) -> FaceBorder | None:
             if true.keys().isdisjoint(edges.chains[k].labels):
                 bounds.segments += loop_segments(loop)
             else:
-                loop = chorded(edges.chains[k], true, bounds)
+                loop = replace_curves_by_chords(edges.chains[k], true, bounds)
             is_turned = (compute_signed_area(loop_segments(chains[k])) > 0) != (number == 0)
             loops.append(reverse_vertices(loop) if is_turned else loop)
     except InputError:
@@ -389,8 +402,8 @@ def border_of(face: SolidFace) -> FaceBorder | None:
     return FaceBorder(loops, bounds) if loops else None
 
 
-def chorded(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Array:
-    """Vertices (N, 3) of a face's border with chords in the place of its curves.
+def replace_curves_by_chords(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Array:
+    """Return the vertices (N, 3) of a face's border with chords in the place of its curves.
 
     The chain is the border with some lines and arcs in their place, and ``curves`` has the pieces of each by
     its label. Added to the bounds are its lines and arcs, and polygons that hold its curves. Refuses a curve
@@ -409,25 +422,25 @@ def chorded(chain: Chain, curves: Mapping[str, Pieces], bounds: Enclosure) -> Ar
             done.add(label)
             run = [chain.points[m] for m in range(count) if chain.labels[m] == label]
             points: list[Point] = []
-            for control in near_pieces(curves[label]):
+            for control in split_near_chords(curves[label]):
                 every = [(float(x), float(y)) for x, y in control]
                 bounds.add_points(every)
                 points = points or every[:1]
                 points.append(every[-1])
-            points = points[::-1] if runs_back(curves[label], run) else points
+            points = points[::-1] if runs_backwards(curves[label], run) else points
             vertices += [(x, y, 0.0) for x, y in points[:-1]]
     return np.array(vertices)
 
 
-def runs_back(pieces: Pieces, run: Sequence[Point]) -> bool:
-    """Whether points along a curve run from its end to its start."""
+def runs_backwards(pieces: Pieces, run: Sequence[Point]) -> bool:
+    """Return whether points along a curve run from its end to its start."""
     start, end = point_at(pieces, 0.0), point_at(pieces, float(len(pieces)))
     if dist(start, end) > SHORTEST:
         return dist(run[0], end) < dist(run[0], start)
-    return (enclosed(points_along(pieces, 8)) > 0) != (enclosed(np.array(run)) > 0)
+    return (measure_enclosed_area(points_along(pieces, 8)) > 0) != (measure_enclosed_area(np.array(run)) > 0)
 
 
-def enclosed(points: Array) -> float:
-    """The area in mm² within points (N, 2) in running order, positive where that is counter-clockwise."""
+def measure_enclosed_area(points: Array) -> float:
+    """Return the area in mm² within points (N, 2) in running order, positive where that is counter-clockwise."""
     x, y = points.T
     return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))) / 2

@@ -15,14 +15,14 @@ from workhold.errors import InputError
 __all__ = [
     "AXES",
     "REQUIREMENT",
-    "along",
-    "axis_named",
-    "bounding_box",
-    "guarded",
+    "turn_axis_up",
+    "check_axis_name",
+    "compute_bounding_box",
+    "read_guarded",
     "load_step_library",
     "occ",
-    "raised",
-    "sub_shapes",
+    "raise_shape",
+    "list_sub_shapes",
     "turn_along",
 ]
 
@@ -60,7 +60,7 @@ occ = OpenCascade()
 
 
 def load_step_library() -> None:
-    """Loads Open CASCADE and keeps it from writing its progress to the terminal, where a result file may go.
+    """Load Open CASCADE and keep it from writing its progress to the terminal, where a result file may go.
 
     Raises
     ------
@@ -70,11 +70,11 @@ def load_step_library() -> None:
     try:
         from OCP.Message import Message
     except ImportError as error:
-        raise InputError(remedy(error)) from error
+        raise InputError(explain_missing_library(error)) from error
     Message.DefaultMessenger_s().ChangePrinters().Clear()
 
 
-def remedy(error: ImportError) -> str:
+def explain_missing_library(error: ImportError) -> str:
     if isinstance(error, ModuleNotFoundError):
         return f"STEP files need a library that is not installed: pip install '{REQUIREMENT}'."
     missing = re.match(r"(lib\S+?\.so[.\d]*): cannot open shared object file", str(error))
@@ -88,8 +88,8 @@ def remedy(error: ImportError) -> str:
     )
 
 
-def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
-    """What some reading returns; ``further`` are errors that come of a damaged file as well.
+def read_guarded(read: Callable[[], T], *further: type[Exception]) -> T:
+    """Return what some reading returns; ``further`` are errors that come of a damaged file as well.
 
     Refuses what the library, or the arithmetic after it, fails over.
     """
@@ -104,8 +104,8 @@ def guarded(read: Callable[[], T], *further: type[Exception]) -> T:
         raise InputError("the STEP file is damaged: open it in a CAD program and export it again.") from error
 
 
-def sub_shapes(shape: Any, kind: str) -> list[Any]:
-    """The parts of one kind of a shape, each as often as it is used.
+def list_sub_shapes(shape: Any, kind: str) -> list[Any]:
+    """Return the parts of one kind of a shape, each as often as it is used.
 
     Parameters
     ----------
@@ -120,23 +120,23 @@ def sub_shapes(shape: Any, kind: str) -> list[Any]:
     return found
 
 
-def bounding_box(shape: Any) -> tuple[Corner, Corner]:
-    """Both corners of a shape's bounding box in mm, to rounding."""
+def compute_bounding_box(shape: Any) -> tuple[Corner, Corner]:
+    """Return both corners of a shape's bounding box in mm, to rounding."""
     box = occ.Bnd_Box()
     occ.BRepBndLib.AddOptimal_s(shape, box, False, False)
     low, high = box.CornerMin(), box.CornerMax()
     return (low.X(), low.Y(), low.Z()), (high.X(), high.Y(), high.Z())
 
 
-def raised(shape: Any, height: float) -> Any:
-    """A shape moved up by a height in mm."""
+def raise_shape(shape: Any, height: float) -> Any:
+    """Return a shape moved up by a height in mm."""
     move = occ.gp_Trsf()
     move.SetTranslation(occ.gp_Vec(0.0, 0.0, height))
     return shape.Moved(occ.TopLoc_Location(move))
 
 
-def axis_named(axis: str | None) -> str:
-    """The name of an axis, z for None.
+def check_axis_name(axis: str | None) -> str:
+    """Return the name of an axis, z for None.
 
     Raises
     ------
@@ -149,13 +149,13 @@ def axis_named(axis: str | None) -> str:
     return name
 
 
-def along(shape: Any, axis: str) -> Any:
-    """A shape turned so that an axis of the file points up; see :func:`turn_along`."""
+def turn_axis_up(shape: Any, axis: str) -> Any:
+    """Return a shape turned so that an axis of the file points up; see :func:`turn_along`."""
     return shape.Moved(occ.TopLoc_Location(turn_along(axis)))
 
 
 def turn_along(axis: str) -> Any:
-    """The turn that makes an axis of the file point up; coordinates only change places and signs.
+    """Return the turn that makes an axis of the file point up; coordinates only change places and signs.
 
     With a minus the part lies on its other side, turned over like a page: what pointed to x points to -x.
     """

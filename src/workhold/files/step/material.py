@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import SAME_HEIGHT, SHORTEST
 from workhold.files.step.edge_curves import EdgeCurve
-from workhold.files.step.faces import SolidFace, is_upright, surface_of
+from workhold.files.step.faces import SolidFace, find_surface, is_upright
 from workhold.files.step.library import occ
 from workhold.geometry.segment import Arc, Line, Point
 
@@ -69,15 +69,19 @@ class PlaneFaces:
     known: dict[tuple[int, Point], bool] = field(init=False, factory=dict)
 
     @classmethod
-    def of(cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]) -> tuple[PlaneFaces, list[int]]:
-        """The flat ones and the cones of some faces, and the indices of others that are not upright.
+    def from_faces(
+        cls, faces: Sequence[SolidFace], edges: Sequence[EdgeCurve]
+    ) -> tuple[PlaneFaces, list[int]]:
+        """Return the flat ones and the cones of some faces, and the indices of others that are not upright.
 
         Parameters
         ----------
         edges : of all faces.
         """
         planes = {
-            k: plane for k, face in enumerate(faces) if (plane := plane_of(face) or cone_of(face)) is not None
+            k: plane
+            for k, face in enumerate(faces)
+            if (plane := find_plane(face) or find_cone(face)) is not None
         }
         for edge in edges:
             if edge.is_other:
@@ -105,47 +109,49 @@ class PlaneFaces:
         )
         return made, others
 
-    def heights(self, point: Point) -> list[float]:
-        """The z in mm at which the upright line through a point meets the faces, in any order."""
-        near = np.flatnonzero(boxed([point], self.boxes)).tolist() if len(self.boxes) else []
+    def find_crossing_heights(self, point: Point) -> list[float]:
+        """Return the z in mm at which the upright line through a point meets the faces, in any order."""
+        near = np.flatnonzero(find_boxes_holding([point], self.boxes)).tolist() if len(self.boxes) else []
         if not near:
             return []
-        (levels,) = self.levels([point])
-        return [float(levels[k]) for k in near if self.holds(k, point)]
+        (levels,) = self.compute_heights_at([point])
+        return [float(levels[k]) for k in near if self.contains(k, point)]
 
-    def met(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """A z in mm between two others at which the upright line through each point meets a face, else infinity.
+    def find_any_crossing_heights(self, points: Sequence[Point], low: float, high: float) -> list[float]:
+        """Return a z in mm between two others at which the upright line through each point meets a face, else
+        infinity.
 
         Two rays must agree.
         """
         if not len(self.planes):
             return [inf] * len(points)
-        levels = self.levels(points)
-        near = boxed(points, self.boxes) & (low < levels) & (levels < high)
+        levels = self.compute_heights_at(points)
+        near = find_boxes_holding(points, self.boxes) & (low < levels) & (levels < high)
         return [
             next(
-                (float(own[k]) for k in np.flatnonzero(is_near).tolist() if self.surely_holds(k, point)), inf
+                (float(own[k]) for k in np.flatnonzero(is_near).tolist() if self.surely_contains(k, point)),
+                inf,
             )
             for point, own, is_near in zip(points, levels, near, strict=True)
         ]
 
-    def surely_holds(self, face: int, point: Point) -> bool:
-        """Whether both rays find a point in a face of a number."""
+    def surely_contains(self, face: int, point: Point) -> bool:
+        """Return whether both rays find a point in a face of a number."""
         key = face, point
         if key not in self.known:
-            self.known[key] = self.holds(face, point) and self.holds(face, point, OTHER_RAY)
+            self.known[key] = self.contains(face, point) and self.contains(face, point, OTHER_RAY)
         return self.known[key]
 
-    def levels(self, points: Sequence[Point]) -> Array:
-        """The z (N, F) in mm of each face's plane or cone at points."""
+    def compute_heights_at(self, points: Sequence[Point]) -> Array:
+        """Return the z (N, F) in mm of each face's plane or cone at points."""
         origin, rise_x, rise_y, outward, axis_x, axis_y = self.planes.T
         x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
         away = np.hypot(x - axis_x, y - axis_y)
         levels: Array = origin + rise_x * x + rise_y * y + outward * away
         return levels
 
-    def holds(self, face: int, point: Point, ray: Point = RAY) -> bool:
-        """Whether a face of a number holds a point, seen from above.
+    def contains(self, face: int, point: Point, ray: Point = RAY) -> bool:
+        """Return whether a face of a number holds a point, seen from above.
 
         Parameters
         ----------
@@ -171,17 +177,17 @@ class PlaneFaces:
         return met % 2 == 1
 
 
-def boxed(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
-    """Which boxes (F, 4 and more), larger by ``more`` mm on all sides, have points (N, 2) in them, (N, F)."""
+def find_boxes_holding(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
+    """Return which boxes (F, 4 and more), larger by ``more`` mm on all sides, have points (N, 2) in them, (N, F)."""
     x, y = np.array(points)[:, :, None].transpose(1, 0, 2)
     near: NDArray[np.bool_] = (boxes[:, 0] - more <= x) & (x <= boxes[:, 2] + more)
     near &= (boxes[:, 1] - more <= y) & (y <= boxes[:, 3] + more)
     return near
 
 
-def plane_of(face: SolidFace) -> Sheet | None:
-    """A face's plane, see :class:`PlaneFaces`; None for an upright face and for one that is not flat."""
-    surface: Any = surface_of(face.shape)
+def find_plane(face: SolidFace) -> Sheet | None:
+    """Return a face's plane, see :class:`PlaneFaces`; None for an upright face and for one that is not flat."""
+    surface: Any = find_surface(face.shape)
     if face.lie == "upright" or surface.GetType() != occ.GeomAbs_Plane:
         return None
     if face.lie == "level":
@@ -191,8 +197,8 @@ def plane_of(face: SolidFace) -> Sheet | None:
     return place.Z() - rise_x * place.X() - rise_y * place.Y(), rise_x, rise_y, 0.0, 0.0, 0.0
 
 
-def cone_of(face: SolidFace) -> Sheet | None:
-    """A face's cone, see :class:`PlaneFaces`; None for others and for both sides of a tip."""
+def find_cone(face: SolidFace) -> Sheet | None:
+    """Return a face's cone, see :class:`PlaneFaces`; None for others and for both sides of a tip."""
     surface = occ.BRepAdaptor_Surface(face.shape)
     if surface.GetType() != occ.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
         return None
@@ -239,7 +245,7 @@ class Material:
     upward: Any = field(init=False)
 
     def __attrs_post_init__(self) -> None:
-        self.flat, others = PlaneFaces.of(self.faces, self.edges)
+        self.flat, others = PlaneFaces.from_faces(self.faces, self.edges)
         # The lowest first: what is met low is reached at more heights.
         met = sorted((self.faces[k] for k in others), key=lambda face: face.low)
         self.meeting = [occ.IntCurvesFace_Intersector(face.shape, ON_FACE) for face in met]
@@ -248,15 +254,17 @@ class Material:
         self.foot = occ.gp_Pnt()
         self.upward = occ.gp_Lin(self.foot, occ.gp_Dir(0.0, 0.0, 1.0))
 
-    def intervals(self, point: Point, near: Sequence[int] | None = None) -> list[tuple[float, float]]:
-        """The intervals of the upright line through a point (x, y), from the lowest up.
+    def find_material_intervals(
+        self, point: Point, near: Sequence[int] | None = None
+    ) -> list[tuple[float, float]]:
+        """Return the intervals of the upright line through a point (x, y), from the lowest up.
 
         ``near`` are the numbers of the faces that are not flat and may lie over the point, where they are
         known.
         """
         if point not in self.known:
-            near = np.flatnonzero(self.near([point])).tolist() if near is None else near
-            heights = self.heights(point, near)
+            near = np.flatnonzero(self.find_faces_near([point])).tolist() if near is None else near
+            heights = self.find_crossing_heights(point, near)
             is_clear = all(high - low > SAME_HEIGHT for low, high in pairwise(heights))
             if len(heights) % 2 == 0 and is_clear:
                 self.known[point] = list(zip(heights[0::2], heights[1::2], strict=True))
@@ -271,26 +279,28 @@ class Material:
         return self.known[point]
 
     def is_inside(self, point: Point, z: float) -> bool:
-        """Whether the solid has material at a point of the plane and a height."""
+        """Return whether the solid has material at a point of the plane and a height."""
         if self.classifier is None:
             # It looks at the whole solid first, which takes much longer than each of its answers.
             self.classifier = occ.BRepClass3d_SolidClassifier(self.shape)
         self.classifier.Perform(occ.gp_Pnt(*point, z), 1e-7)
         return bool(self.classifier.State() == occ.TopAbs_IN)
 
-    def heights(self, point: Point, near: Sequence[int]) -> list[float]:
-        """Sorted z in mm at which the upright line through a point passes a face, see :meth:`intervals`."""
-        found = self.flat.heights(point)
+    def find_crossing_heights(self, point: Point, near: Sequence[int]) -> list[float]:
+        """Return the sorted z in mm at which the upright line through a point passes a face, see
+        :meth:`find_material_intervals`.
+        """
+        found = self.flat.find_crossing_heights(point)
         for index in near:
-            found += self.hits_of(point, index)
+            found += self.find_crossings_with_face(point, index)
         return sorted(found)
 
-    def near(self, points: Sequence[Point]) -> NDArray[np.bool_]:
-        """Which faces (N, F) that are not flat may lie over points, seen by their boxes."""
-        return boxed(points, self.boxes, ON_FACE)
+    def find_faces_near(self, points: Sequence[Point]) -> NDArray[np.bool_]:
+        """Return which faces (N, F) that are not flat may lie over points, seen by their boxes."""
+        return find_boxes_holding(points, self.boxes, ON_FACE)
 
-    def hits_of(self, point: Point, index: int) -> list[float]:
-        """The z in mm at which the upright line through a point passes a face that is not flat."""
+    def find_crossings_with_face(self, point: Point, index: int) -> list[float]:
+        """Return the z in mm at which the upright line through a point passes a face that is not flat."""
         key = point, index
         if key not in self.hits:
             face = self.meeting[index]
@@ -301,8 +311,8 @@ class Material:
             self.hits[key] = [self.below + face.WParameter(k) for k in met]
         return self.hits[key]
 
-    def reaches_into(self, points: Sequence[Point], low: float, high: float) -> list[bool]:
-        """Whether some material over points lies strictly between two z in mm."""
+    def lies_between(self, points: Sequence[Point], low: float, high: float) -> list[bool]:
+        """Return whether some material over points lies strictly between two z in mm."""
         # Outlines of all heights ask for the same points, and what is reached stays so as the height grows.
         bounds = [self.reached.get((point, low), (inf, -inf)) for point in points]
         fresh = [point for point, (least, most) in zip(points, bounds, strict=True) if most < high < least]
@@ -318,30 +328,30 @@ class Material:
         return [high >= self.reached[point, low][0] for point in points]
 
     def find_within(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """Finds what :meth:`reaches_into` returns: an upper height from which on it is so, else infinity."""
+        """Find what :meth:`lies_between` returns: an upper height from which on it is so, else infinity."""
         # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,
         # because they answer much faster.
         inner = low + 2 * SAME_HEIGHT, high - 2 * SAME_HEIGHT
-        found = self.flat.met(points, *inner)
-        near = self.near(points)
-        crossed = numbers_of(near & (self.boxes[:, 4] < inner[1]) & (self.boxes[:, 5] > inner[0]))
-        every = numbers_of(near)
+        found = self.flat.find_any_crossing_heights(points, *inner)
+        near = self.find_faces_near(points)
+        crossed = list_marked_columns(near & (self.boxes[:, 4] < inner[1]) & (self.boxes[:, 5] > inner[0]))
+        every = list_marked_columns(near)
         for number, point in enumerate(points):
             if found[number] == inf:
-                hits = (z for k in crossed[number] for z in self.hits_of(point, k))
+                hits = (z for k in crossed[number] for z in self.find_crossings_with_face(point, k))
                 found[number] = next((z for z in hits if inner[0] < z < inner[1]), inf)
             if found[number] < inf:
                 found[number] = min(found[number] + 3 * SAME_HEIGHT, high)
             elif any(
                 min(end, high) - max(start, low) > SAME_HEIGHT
-                for start, end in self.intervals(point, every[number])
+                for start, end in self.find_material_intervals(point, every[number])
             ):
                 found[number] = high
         return found
 
 
-def numbers_of(marked: NDArray[np.bool_]) -> list[list[int]]:
-    """The numbers of the columns (N, M) that are marked in each row."""
+def list_marked_columns(marked: NDArray[np.bool_]) -> list[list[int]]:
+    """Return the numbers of the columns (N, M) that are marked in each row."""
     found: list[list[int]] = [[] for _ in marked]
     for row, column in np.argwhere(marked).tolist():
         found[row].append(column)

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from workhold.conventions import SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.apart import run_apart
-from workhold.files.step.by_height import HeightView, drawn, turned_up
-from workhold.files.step.library import guarded, load_step_library, occ, sub_shapes
+from workhold.files.step.by_height import HeightView, draw_solid_by_height, turn_solid_up
+from workhold.files.step.library import list_sub_shapes, load_step_library, occ, read_guarded
 from workhold.files.step.reader import prepare
 from workhold.files.step.solids import read_solids
 from workhold.geometry.loop import compute_signed_area, loop_segments
@@ -28,7 +28,7 @@ from workhold.model.pose import Pose
 from workhold.model.solid import SolidOutline
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["PartShape", "part_shape", "pose_move", "prepare"]
+__all__ = ["PartShape", "make_part_shape", "make_pose_move", "prepare"]
 
 Array = NDArray[np.float64]
 # Bands and level faces of a solid as plain data: pairs of heights, and heights with areas.
@@ -55,42 +55,42 @@ class PartShape:
     triangles: NDArray[np.int64]
     kept: str
 
-    def solid(self, pose: Pose) -> Any:
+    def place_solid(self, pose: Pose) -> Any:
         """Open CASCADE's solid in the pose of a fixture."""
         load_step_library()
         shape = occ.TopoDS_Shape()
         occ.BRepTools.Read_s(shape, BytesIO(self.kept.encode("ascii")), occ.BRep_Builder())
-        move = pose_move(pose)
+        move = make_pose_move(pose)
         # An assembly keeps no place that a solid has of its own: it becomes part of the surfaces.
         move.Multiply(shape.Location().Transformation())
         bare = shape.Located(occ.TopLoc_Location())
-        return sub_shapes(occ.BRepBuilderAPI_Transform(bare, move, True).Shape(), "SOLID")[0]
+        return list_sub_shapes(occ.BRepBuilderAPI_Transform(bare, move, True).Shape(), "SOLID")[0]
 
-    def surface(self, pose: Pose) -> tuple[Array, Array, NDArray[np.int64]]:
-        """Positions in mm, normals and triangles in the pose of a fixture."""
-        (ux, uy), (vx, vy), (x, y) = frame(pose)
+    def place_surface(self, pose: Pose) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Return the positions in mm, normals and triangles in the pose of a fixture."""
+        (ux, uy), (vx, vy), (x, y) = compute_frame(pose)
         turn = np.array([[ux, uy, 0.0], [vx, vy, 0.0], [0.0, 0.0, 1.0]])
         return self.positions @ turn + (x, y, 0.0), self.normals @ turn, self.triangles
 
 
-def pose_move(pose: Pose) -> Any:
-    """The move of Open CASCADE that carries a part into a pose."""
-    (ux, uy), (vx, vy), (x, y) = frame(pose)
+def make_pose_move(pose: Pose) -> Any:
+    """Return the move of Open CASCADE that carries a part into a pose."""
+    (ux, uy), (vx, vy), (x, y) = compute_frame(pose)
     move = occ.gp_Trsf()
     move.SetValues(ux, vx, 0.0, x, uy, vy, 0.0, y, 0.0, 0.0, 1.0, 0.0)
     return move
 
 
-def frame(pose: Pose) -> tuple[Point, Point, Point]:
-    """The directions in which the part's x and y point in a pose, and where its origin is, in mm."""
+def compute_frame(pose: Pose) -> tuple[Point, Point, Point]:
+    """Return the directions in which the part's x and y point in a pose, and where its origin is, in mm."""
     x, y = (float(one) for one in pose.apply(0.0, 0.0))
     ends = (pose.apply(1.0, 0.0), pose.apply(0.0, 1.0))
     along_x, along_y = ((float(a) - x, float(b) - y) for a, b in ends)
     return along_x, along_y, (x, y)
 
 
-def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
-    """The shape of a part from the bytes of the STEP file that its outline was read from.
+def make_part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
+    """Return the shape of a part from the bytes of the STEP file that its outline was read from.
 
     Raises
     ------
@@ -105,13 +105,13 @@ def part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
         )
     view = {name: getattr(solid, name) for name in ("axis", "peg_height", "head_room", "least_band")}
     loops = [loop.tolist() for loop in workpiece.loops]
-    options = {"view": view, "loops": loops, "height": solid.height, "levels": levels_of(solid)}
+    options = {"view": view, "loops": loops, "height": solid.height, "levels": list_levels(solid)}
     positions, normals, triangles, kept = run_apart(__name__, content, options, "the STEP file")
     return PartShape(np.array(positions), np.array(normals), np.array(triangles, dtype=np.int64), kept)
 
 
-def levels_of(solid: SolidOutline) -> Levels:
-    """The heights of bands, and those of level faces with the areas of their loops."""
+def list_levels(solid: SolidOutline) -> Levels:
+    """Return the heights of bands, and those of level faces with the areas of their loops."""
     bands = [[*band] for band in solid.bands if band is not None]
     # Files of an older program do not say how high upper faces are.
     top = solid.top or ()
@@ -124,27 +124,31 @@ def levels_of(solid: SolidOutline) -> Levels:
     return {"bands": bands, "faces": sizes}
 
 
-def plain(content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels) -> Any:
+def read_as_plain_data(
+    content: bytes, view: dict[str, Any], loops: list[Any], height: float, levels: Levels
+) -> Any:
     """Mesh and shape of the solid that gives some loops, as plain data."""
     wanted = [np.array(loop) for loop in loops]
-    return guarded(lambda: shape_of_outline(content, HeightView(**view), wanted, height, levels), ValueError)
+    return read_guarded(
+        lambda: find_shape_of_outline(content, HeightView(**view), wanted, height, levels), ValueError
+    )
 
 
-def shape_of_outline(
+def find_shape_of_outline(
     content: bytes, view: HeightView, loops: list[Array], height: float, levels: Levels
 ) -> Any:
-    """Meshes and keeps the solid of a file that gives some loops and levels, see :func:`plain`.
+    """Mesh and keep the solid of a file that gives some loops and levels, see :func:`read_as_plain_data`.
 
     Refuses a file of which no solid gives these loops.
     """
     for solid in read_solids(content):
-        found = turned_up(solid, view)
+        found = turn_solid_up(solid, view)
         if abs(found.height - height) > SAME_HEIGHT:
             continue
         with suppress(InputError):
-            own = drawn(solid.shape, found, view, is_advised=False, has_table=False)
-            if is_same(loops, own.loops) and has_levels(levels, levels_of(own.solid)):
-                return *meshed(found.shape), kept(found.shape)
+            own = draw_solid_by_height(solid.shape, found, view, is_advised=False, has_table=False)
+            if is_same(loops, own.loops) and has_levels(levels, list_levels(own.solid)):
+                return *mesh_shape(found.shape), write_shape_text(found.shape)
     raise InputError(
         "no solid of the STEP file gives the outline of the result, as of another part or after a change: "
         "give the file that it was designed from, or design it again."
@@ -152,7 +156,7 @@ def shape_of_outline(
 
 
 def is_same(loops: list[Array], others: tuple[Array, ...]) -> bool:
-    """Whether corners of some loops are among those of others, and both enclose the same area."""
+    """Return whether corners of some loops are among those of others, and both enclose the same area."""
     corners = np.concatenate(others)[:, :2]
     ours = np.concatenate(loops)[:, :2]
     near = np.abs(ours[:, None, :] - corners[None, :, :]).max(axis=2).min(axis=1)
@@ -161,36 +165,36 @@ def is_same(loops: list[Array], others: tuple[Array, ...]) -> bool:
 
 
 def has_levels(levels: Levels, others: Levels) -> bool:
-    """Whether some levels are others; faces count where both are known."""
+    """Return whether some levels are others; faces count where both are known."""
     faces, other_faces = levels["faces"], others["faces"]
-    if faces and other_faces and (len(faces) != len(other_faces) or not have_same(faces, other_faces)):
+    if faces and other_faces and (len(faces) != len(other_faces) or not hold_same_pairs(faces, other_faces)):
         return False
-    return have_same(levels["bands"], others["bands"])
+    return hold_same_pairs(levels["bands"], others["bands"])
 
 
-def have_same(one: list[list[float]], other: list[list[float]]) -> bool:
-    """Whether each pair of numbers of two lists is in the other as well, as nearly as corners agree."""
+def hold_same_pairs(one: list[list[float]], other: list[list[float]]) -> bool:
+    """Return whether each pair of numbers of two lists is in the other as well, as nearly as corners agree."""
     a, b = (np.array(pairs).reshape(-1, 2) for pairs in (one, other))
     off = np.abs(a[:, None] - b[None]) - SAME_AREA * np.abs(a[:, None])
     near = off.max(axis=2, initial=-inf) <= SAME_CORNER
     return bool(near.any(axis=1).all() and near.any(axis=0).all())
 
 
-def kept(shape: Any) -> str:
-    """A shape in Open CASCADE's own form, without its triangles."""
+def write_shape_text(shape: Any) -> str:
+    """Return a shape in Open CASCADE's own form, without its triangles."""
     occ.BRepTools.Clean_s(shape)
     stream = BytesIO()
     occ.BRepTools.Write_s(shape, stream)
     return stream.getvalue().decode("ascii")
 
 
-def meshed(shape: Any) -> tuple[list[Any], list[Any], list[Any]]:
-    """Positions in mm, normals and triangles of a shape; each face has its own vertices."""
+def mesh_shape(shape: Any) -> tuple[list[Any], list[Any], list[Any]]:
+    """Return the positions in mm, normals and triangles of a shape; each face has its own vertices."""
     occ.BRepMesh_IncrementalMesh(shape, SAGITTA, False, TURN, False)
     positions: list[Any] = []
     normals: list[Any] = []
     triangles: list[Any] = []
-    for face in sub_shapes(shape, "FACE"):
+    for face in list_sub_shapes(shape, "FACE"):
         location = occ.TopLoc_Location()
         mesh = occ.BRep_Tool.Triangulation_s(face, location)
         if mesh is None:

@@ -29,16 +29,16 @@ from workhold.files.step.edge_curves import (
     EdgeCurve,
     Found,
     Point3,
-    arc_over,
-    crossing,
-    curve_of,
-    curve_point,
-    extremes,
-    flattened,
-    height,
+    compute_curve_point,
+    find_extremes,
+    find_zero_crossing,
+    flatten_points,
+    get_height,
+    make_arc_between_angles,
+    make_edge_curve,
 )
-from workhold.files.step.faces import SLOPING, SolidFace, is_level, is_upright, surface_of
-from workhold.files.step.library import occ, sub_shapes
+from workhold.files.step.faces import SLOPING, SolidFace, find_surface, is_level, is_upright
+from workhold.files.step.library import list_sub_shapes, occ
 from workhold.geometry.segment import Arc, Line, Point, Segment, measure_distance_to_segment, segment_rows
 from workhold.geometry.subdivision import Inside
 from workhold.kernels.base.distance import outline_distances
@@ -49,13 +49,13 @@ __all__ = [
     "OtherCurveError",
     "PlainCurves",
     "ProjectedCurves",
-    "bounding_edges",
-    "folds",
+    "list_bounding_edges",
+    "find_folds",
     "has_plain_cuts",
-    "leaning_between",
-    "level_cuts",
-    "normal_height",
-    "projected_curves",
+    "list_leaning_faces_between",
+    "cut_face_at_height",
+    "compute_normal_height",
+    "list_projected_curves",
     "refuse_others",
 ]
 
@@ -90,30 +90,32 @@ class ProjectedCurves:
     others: tuple[tuple[int, NDArray[np.float64]], ...]
 
 
-def projected_curves(
+def list_projected_curves(
     faces: Sequence[SolidFace],
     edges: Sequence[EdgeCurve],
     low: float,
     high: float,
     folds_of: Callable[[int], Sequence[Found]],
 ) -> ProjectedCurves:
-    """Every curve that can bound the projection of the slab between two z in mm.
+    """Return every curve that can bound the projection of the slab between two z in mm.
 
-    ``folds_of`` gives the folds of the face of a number, see :func:`folds`; they are the same for all slabs.
+    ``folds_of`` gives the folds of the face of a number, see :func:`find_folds`; they are the same for all slabs.
     """
     segments: list[Segment] = []
     cuts: list[tuple[Segment, Point]] = []
     others: list[tuple[int, NDArray[np.float64]]] = []
-    for edge in bounding_edges(faces, edges, low, high):
+    for edge in list_bounding_edges(faces, edges, low, high):
         if edge.segment is not None:
             segments.append(edge.segment)
-            cuts += [(edge.segment, point) for z in (low, high) for point in edge.crossings(z)]
+            cuts += [
+                (edge.segment, point) for z in (low, high) for point in edge.find_crossings_with_height(z)
+            ]
         elif edge.is_other:
             others.append((edge.face, edge.points[:, :2]))
-    for index in leaning_between(faces, low, high):
+    for index in list_leaning_faces_between(faces, low, high):
         face = faces[index]
         levels = [z for z in (low, high) if face.low - SAME_HEIGHT <= z <= face.high + SAME_HEIGHT]
-        for found in (*folds_of(index), *(one for z in levels for one in level_cuts(face, z))):
+        for found in (*folds_of(index), *(one for z in levels for one in cut_face_at_height(face, z))):
             if isinstance(found, Line | Arc):
                 segments.append(found)
             else:
@@ -121,10 +123,10 @@ def projected_curves(
     return ProjectedCurves(tuple(segments), tuple(cuts), tuple(others))
 
 
-def bounding_edges(
+def list_bounding_edges(
     faces: Sequence[SolidFace], edges: Sequence[EdgeCurve], low: float, high: float
 ) -> Iterator[EdgeCurve]:
-    """The edges that can bound the projection of the slab between two z in mm."""
+    """Yield the edges that can bound the projection of the slab between two z in mm."""
     for edge in edges:
         # A wall that reaches up into the slab stands on edges below it.
         reaches_up = faces[edge.face].lie == "upright" and faces[edge.face].high > low + SAME_HEIGHT
@@ -132,44 +134,44 @@ def bounding_edges(
             yield edge
 
 
-def leaning_between(faces: Sequence[SolidFace], low: float, high: float) -> Iterator[int]:
-    """The numbers of leaning faces of which some may lie between two z in mm."""
+def list_leaning_faces_between(faces: Sequence[SolidFace], low: float, high: float) -> Iterator[int]:
+    """Yield the numbers of leaning faces of which some may lie between two z in mm."""
     for index, face in enumerate(faces):
         if face.lie == "leaning" and face.high >= low - SAME_HEIGHT and face.low <= high + SAME_HEIGHT:
             yield index
 
 
-def level_cuts(face: SolidFace, z: float) -> list[Found]:
-    """The curves in which a level plane meets a leaning face's surface, seen from above."""
-    surface = surface_of(face.shape)
+def cut_face_at_height(face: SolidFace, z: float) -> list[Found]:
+    """Return the curves in which a level plane meets a leaning face's surface, seen from above."""
+    surface = find_surface(face.shape)
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
-        return plane_cut(surface.Plane(), face, z)
+        return cut_plane_at_height(surface.Plane(), face, z)
     if kind == occ.GeomAbs_Sphere:
         ball = surface.Sphere()
         square = ball.Radius() ** 2 - (z - ball.Location().Z()) ** 2
-        return circles(ball.Location(), sqrt(max(square, 0.0)))
+        return make_circles(ball.Location(), sqrt(max(square, 0.0)))
     if kind == occ.GeomAbs_Cylinder and is_level(surface.Cylinder().Axis()):
-        return lying_cut(surface, surface.Cylinder(), z)
+        return cut_lying_cylinder(surface, surface.Cylinder(), z)
     if kind == occ.GeomAbs_Cone and is_upright(surface.Cone().Axis()):
         half, apex = surface.Cone().SemiAngle(), surface.Cone().Apex()
-        return circles(apex, abs((z - apex.Z()) * sin(half) / cos(half)))
+        return make_circles(apex, abs((z - apex.Z()) * sin(half) / cos(half)))
     if kind == occ.GeomAbs_Torus and is_upright(surface.Torus().Axis()):
         ring = surface.Torus()
         square = ring.MinorRadius() ** 2 - (z - ring.Location().Z()) ** 2
         reach = sqrt(max(square, 0.0))
         radii = {ring.MajorRadius() + reach, ring.MajorRadius() - reach} if square >= 0 else ()
-        return circles(ring.Location(), *radii)
+        return make_circles(ring.Location(), *radii)
     if kind == occ.GeomAbs_Torus and is_level(surface.Torus().Axis()) and is_open(surface.Torus()):
-        return lying_ring_cuts(surface, z)
+        return cut_lying_ring(surface, z)
     if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
-        return turned_cuts(surface, z)
+        return cut_turned_surface(surface, z)
     return cut_edges(face.shape, z)
 
 
 def has_plain_cuts(face: SolidFace) -> bool:
-    """Whether a leaning face is cut at every height in lines and circles, see :func:`level_cuts`."""
-    surface = surface_of(face.shape)
+    """Return whether a leaning face is cut at every height in lines and circles, see :func:`cut_face_at_height`."""
+    surface = find_surface(face.shape)
     kind = surface.GetType()
     upright = {
         occ.GeomAbs_Cone: lambda: surface.Cone().Axis(),
@@ -183,8 +185,8 @@ def has_plain_cuts(face: SolidFace) -> bool:
     return bool(kind in (occ.GeomAbs_Plane, occ.GeomAbs_Sphere))
 
 
-def plane_cut(plane: Any, face: SolidFace, z: float) -> list[Found]:
-    """The line in which a sloping plane passes a height, as long as the face is wide."""
+def cut_plane_at_height(plane: Any, face: SolidFace, z: float) -> list[Found]:
+    """Return the line in which a sloping plane passes a height, as long as the face is wide."""
     normal, place = plane.Axis().Direction(), plane.Location()
     across = hypot(normal.X(), normal.Y())
     nx, ny = normal.X() / across, normal.Y() / across
@@ -199,8 +201,8 @@ def plane_cut(plane: Any, face: SolidFace, z: float) -> list[Found]:
     return [Line((x - low * ny, y + low * nx), (x - high * ny, y + high * nx))]
 
 
-def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
-    """The two rulings in which a lying cylinder passes a height."""
+def cut_lying_cylinder(surface: Any, cylinder: Any, z: float) -> list[Found]:
+    """Return the two rulings in which a lying cylinder passes a height."""
     position = cylinder.Position()
     center = cylinder.Location()
     share = (z - center.Z()) / cylinder.Radius()
@@ -217,12 +219,13 @@ def lying_cut(surface: Any, cylinder: Any, z: float) -> list[Found]:
 
 
 def is_open(ring: Any) -> bool:
-    """Whether a ring has a hole, so that its tube does not run through itself."""
+    """Return whether a ring has a hole, so that its tube does not run through itself."""
     return bool(ring.MajorRadius() > ring.MinorRadius())
 
 
-def lying_ring_cuts(surface: Any, z: float) -> list[Found]:
-    """The curves in which a ring with a level axis passes a height, over as much of its tube as a face has.
+def cut_lying_ring(surface: Any, z: float) -> list[Found]:
+    """Return the curves in which a ring with a level axis passes a height, over as much of its tube as a face
+    has.
 
     With the axis d, the upward direction e, and b across both, a point of the ring is
     c + (R + r cos v) (cos u b + sin u e) + r sin v d, so at a height h above c it is sin u = h / (R + r cos v).
@@ -250,18 +253,18 @@ def lying_ring_cuts(surface: Any, z: float) -> list[Found]:
         for run in (run for run in runs if len(run) > 2 and is_there[run[0]]):
             points = np.column_stack([x[run], y[run]])
             off = float(from_fold[run].max())
-            segment = flattened(points) if off > BESIDE_FOLD else None
+            segment = flatten_points(points) if off > BESIDE_FOLD else None
             if segment is not None or (off > ONE_CURVE and np.ptp(points, axis=0).max() > SHORTEST):
                 found.append(points if segment is None else segment)
     return found
 
 
 def cut_edges(shape: Any, z: float) -> list[Found]:
-    """The curves in which a level plane cuts a face of any surface, by Open CASCADE."""
+    """Return the curves in which a level plane cuts a face of any surface, by Open CASCADE."""
     cut = occ.BRepAlgoAPI_Section(shape, occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0)))
     found: list[Found] = []
-    for edge in sub_shapes(cut.Shape(), "EDGE"):
-        curve = curve_of(0, occ.BRepAdaptor_Curve(edge))
+    for edge in list_sub_shapes(cut.Shape(), "EDGE"):
+        curve = make_edge_curve(0, occ.BRepAdaptor_Curve(edge))
         if curve.segment is not None:
             found.append(curve.segment)
         elif curve.is_other:
@@ -269,30 +272,31 @@ def cut_edges(shape: Any, z: float) -> list[Found]:
     return found
 
 
-def folds(face: SolidFace) -> list[Found]:
-    """Where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
-    surface = surface_of(face.shape)
+def find_folds(face: SolidFace) -> list[Found]:
+    """Return where a leaning face stands upright, seen from above; more of it than the face has does no harm."""
+    surface = find_surface(face.shape)
     kind = surface.GetType()
     if kind == occ.GeomAbs_Plane:
         return []
     if kind == occ.GeomAbs_Sphere:
-        return circles(surface.Sphere().Location(), surface.Sphere().Radius())
+        return make_circles(surface.Sphere().Location(), surface.Sphere().Radius())
     if kind in (occ.GeomAbs_Cylinder, occ.GeomAbs_Cone):
-        return list(ruled_folds(surface, kind == occ.GeomAbs_Cylinder))
+        return list(find_ruled_folds(surface, kind == occ.GeomAbs_Cylinder))
     if kind == occ.GeomAbs_Torus:
         ring = surface.Torus()
         if is_upright(ring.Axis()):
             major, minor = ring.MajorRadius(), ring.MinorRadius()
-            return circles(ring.Location(), major + minor, major - minor)
+            return make_circles(ring.Location(), major + minor, major - minor)
         if is_level(ring.Axis()):
-            return lying_ring_folds(surface)
+            return find_lying_ring_folds(surface)
     if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
-        return turned_folds(surface)
-    return free_folds(surface)
+        return find_folds_of_turned_surface(surface)
+    return find_free_form_folds(surface)
 
 
-def lying_ring_folds(surface: Any) -> list[Found]:
-    """Where a ring with a level axis stands upright, seen from above, over as much of its tube as a face has.
+def find_lying_ring_folds(surface: Any) -> list[Found]:
+    """Return where a ring with a level axis stands upright, seen from above, over as much of its tube as a
+    face has.
 
     With the axis d and the radial direction r(u), the normal at the angle v of the tube is
     cos v r(u) + sin v d. It is level at cos v = 0, a line, and where r is level: at b and -b, across the axis,
@@ -307,7 +311,7 @@ def lying_ring_folds(surface: Any) -> list[Found]:
     for side in (-1.0, 1.0):
         across = atan2(side * dx, -side * dy)
         low, high = sorted((-side * first, -side * last))
-        arc = arc_over((x - side * major * dy, y + side * major * dx), minor, low, high)
+        arc = make_arc_between_angles((x - side * major * dy, y + side * major * dx), minor, low, high)
         found.append(evolve(arc, mid_angle=arc.mid_angle + across))
         px, py = x + side * minor * dx, y + side * minor * dy
         turns = (side * pi / 2 + k * tau for k in (-1, 0, 1))
@@ -316,8 +320,8 @@ def lying_ring_folds(surface: Any) -> list[Found]:
     return found
 
 
-def ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
-    """The rulings of a cylinder or a cone along which the normal is level.
+def find_ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
+    """Yield the rulings of a cylinder or a cone along which the normal is level.
 
     The radial direction is r(u) = X cos u + Y sin u. With the axis d and half the cone's angle h, 0 of a
     cylinder, the normal is r(u) cos h - d sin h. It is level where r(u)_z cos h = d_z sin h.
@@ -340,32 +344,34 @@ def ruled_folds(surface: Any, is_cylinder: bool) -> Iterator[Line]:
             yield Line((a.X(), a.Y()), (b.X(), b.Y()))
 
 
-def free_folds(surface: Any, steps: int = 25) -> list[Found]:
-    """Points (N, 2) of a free-form face, or a tilted ring, at which its normal is level, found on a grid."""
+def find_free_form_folds(surface: Any, steps: int = 25) -> list[Found]:
+    """Return the points (N, 2) of a free-form face, or a tilted ring, at which its normal is level, found on a grid."""
     us = np.linspace(surface.FirstUParameter(), surface.LastUParameter(), steps)
     vs = np.linspace(surface.FirstVParameter(), surface.LastVParameter(), steps)
-    values = np.array([[normal_height(surface, u, v) for v in vs] for u in us])
+    values = np.array([[compute_normal_height(surface, u, v) for v in vs] for u in us])
     points = []
     for i, j in zip(*np.nonzero(values[:, :-1] * values[:, 1:] < 0), strict=True):
         a, b = vs[j], vs[j + 1]
         below = values[i, j] < 0
         for _ in range(40):
             middle = (a + b) / 2
-            a, b = (middle, b) if (normal_height(surface, us[i], middle) < 0) == below else (a, middle)
+            a, b = (
+                (middle, b) if (compute_normal_height(surface, us[i], middle) < 0) == below else (a, middle)
+            )
         point = surface.Value(float(us[i]), float(a))
         points.append((point.X(), point.Y()))
     return [np.array(points)] if points else []
 
 
-def normal_height(surface: Any, u: float, v: float) -> float:
-    """The z of a surface's normal, of any length."""
+def compute_normal_height(surface: Any, u: float, v: float) -> float:
+    """Return the z of a surface's normal, of any length."""
     point, along_u, along_v = occ.gp_Pnt(), occ.gp_Vec(), occ.gp_Vec()
     surface.D1(float(u), float(v), point, along_u, along_v)
     return float(along_u.X() * along_v.Y() - along_u.Y() * along_v.X())
 
 
-def circles(center: Any, *radii: float) -> list[Found]:
-    """Circles about a point of the library, seen from above, without those of no radius."""
+def make_circles(center: Any, *radii: float) -> list[Found]:
+    """Return the circles about a point of the library, seen from above, without those of no radius."""
     return [Arc((center.X(), center.Y()), radius, 0.0, pi, 1.0) for radius in radii if radius > SHORTEST]
 
 
@@ -387,38 +393,44 @@ class Meridian:
     def axis(self) -> Any:
         return self.surface.AxeOfRevolution().Location()
 
-    def radius(self, point: Point3) -> float:
-        """The distance in mm of a point from the axis."""
+    def measure_radius(self, point: Point3) -> float:
+        """Return the distance in mm of a point from the axis."""
         return hypot(point[0] - self.axis.X(), point[1] - self.axis.Y())
 
-    def samples(self) -> tuple[NDArray[np.float64], list[Point3]]:
-        """Parameters (N,) from end to end, and the points there in mm."""
+    def sample_points(self) -> tuple[NDArray[np.float64], list[Point3]]:
+        """Return the parameters (N,) from end to end, and the points there in mm."""
         parameters = np.linspace(self.surface.FirstVParameter(), self.surface.LastVParameter(), SAMPLES)
-        return parameters, [curve_point(self, float(t)) for t in parameters]
+        return parameters, [compute_curve_point(self, float(t)) for t in parameters]
 
-    def circles(self, parameters: Sequence[float]) -> list[Found]:
-        """The circles that some of its points run through."""
-        return circles(self.axis, *(self.radius(curve_point(self, t)) for t in parameters))
+    def make_circles(self, parameters: Sequence[float]) -> list[Found]:
+        """Return the circles that some of its points run through."""
+        return make_circles(
+            self.axis, *(self.measure_radius(compute_curve_point(self, t)) for t in parameters)
+        )
 
 
-def turned_folds(surface: Any) -> list[Found]:
-    """The circles at which a turned surface is widest or narrowest around."""
+def find_folds_of_turned_surface(surface: Any) -> list[Found]:
+    """Return the circles at which a turned surface is widest or narrowest around."""
     curve = Meridian(surface)
-    parameters, points = curve.samples()
-    return curve.circles(extremes(curve, parameters, [curve.radius(point) for point in points], curve.radius))
+    parameters, points = curve.sample_points()
+    return curve.make_circles(
+        find_extremes(
+            curve, parameters, [curve.measure_radius(point) for point in points], curve.measure_radius
+        )
+    )
 
 
-def turned_cuts(surface: Any, z: float) -> list[Found]:
+def cut_turned_surface(surface: Any, z: float) -> list[Found]:
     curve = Meridian(surface)
-    parameters, points = curve.samples()
-    away = np.array([height(point) - z for point in points])
+    parameters, points = curve.sample_points()
+    away = np.array([get_height(point) - z for point in points])
 
     def passed(k: int) -> float:
         sign = 1.0 if away[k] < 0 else -1.0
         low, high = ((float(parameters[m]), sign * float(away[m])) for m in (k, k + 1))
-        return crossing(lambda t: sign * (height(curve_point(curve, t)) - z), low, high)
+        return find_zero_crossing(lambda t: sign * (get_height(compute_curve_point(curve, t)) - z), low, high)
 
-    return curve.circles([passed(int(k)) for k in np.flatnonzero((away[:-1] < 0) != (away[1:] < 0))])
+    return curve.make_circles([passed(int(k)) for k in np.flatnonzero((away[:-1] < 0) != (away[1:] < 0))])
 
 
 class OtherCurveError(InputError):
@@ -451,11 +463,12 @@ class PlainCurves:
     rows: NDArray[np.float64]
 
     @classmethod
-    def of(cls, segments: Sequence[Segment]) -> PlainCurves:
+    def from_segments(cls, segments: Sequence[Segment]) -> PlainCurves:
         return cls(segments, segment_rows(segments) if segments else np.zeros((0, 10)))
 
-    def are_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
-        """Whether all places (N, 2) of another curve run so near to one of them that this one is the border.
+    def all_on_border(self, places: NDArray[np.float64], inside: Inside) -> bool:
+        """Return whether all places (N, 2) of another curve run so near to one of them that this one is the
+        border.
 
         A lying ring or a sphere is cut beside where it is widest, nearer to the border than that can be looked at.
         Then what lies between is asked; nothing is where they are nearer than curves that are one.
@@ -474,7 +487,7 @@ class PlainCurves:
 def refuse_others(
     others: Sequence[Other], faces: Sequence[SolidFace], inside: Inside, plain: PlainCurves | None = None
 ) -> None:
-    """Refuses a curve that is neither line nor arc where material lies on one side of it only.
+    """Refuse a curve that is neither line nor arc where material lies on one side of it only.
 
     The points farthest out are looked at first: where there is such a curve, it is most likely there.
     ``inside`` says which of some points (x, y) belong to the outline's region; ``plain`` has lines and arcs
@@ -497,15 +510,15 @@ def refuse_others(
     for each in (FEW, 1):
         for index, points in ordered.values():
             away = np.hypot(*(points[1:-1] - middle).T)
-            found = border_places(points, np.argsort(-away, kind="stable")[::each] + 1, inside)
-            if len(found) and not (plain is not None and plain.are_border(found, inside)):
+            found = find_border_places(points, np.argsort(-away, kind="stable")[::each] + 1, inside)
+            if len(found) and not (plain is not None and plain.all_on_border(found, inside)):
                 raise OtherCurveError(faces[index])
 
 
-def border_places(
+def find_border_places(
     points: NDArray[np.float64], looked: NDArray[np.intp], inside: Inside
 ) -> NDArray[np.float64]:
-    """Points (N, 2) of a curve at which it has the region on one side only; none is an end of it.
+    """Return the points (N, 2) of a curve at which it has the region on one side only; none is an end of it.
 
     Of points (N, 2) along the curve, in mm, those that ``looked`` numbers are looked at.
     """

@@ -22,34 +22,40 @@ from workhold.errors import InputError
 from workhold.files.apart import run_apart
 from workhold.files.outline.chain import Chain, CurveReading, Drawing
 from workhold.files.questions import AXIS
-from workhold.files.step.departures import Outline, departure_remarks, refuse_overhang
-from workhold.files.step.faces import Layer, SolidFace, layers_of, solid_faces
+from workhold.files.step.departures import Outline, describe_departures, refuse_overhang
+from workhold.files.step.faces import Layer, SolidFace, list_solid_faces, make_layers
 from workhold.files.step.library import (
     AXES,
-    along,
-    axis_named,
-    bounding_box,
-    guarded,
+    check_axis_name,
+    compute_bounding_box,
+    list_sub_shapes,
     load_step_library,
     occ,
-    sub_shapes,
+    read_guarded,
+    turn_axis_up,
 )
-from workhold.files.step.regions import area_of, borders, level_region, section, union
+from workhold.files.step.regions import (
+    cut_solid_at_height,
+    make_level_region,
+    measure_area,
+    trace_borders,
+    unite_regions,
+)
 from workhold.files.step.solids import (
     Solid,
-    chosen_solid,
-    lost_remarks,
+    choose_solid,
+    describe_lost_solids,
+    describe_other_solids,
+    list_solids_of_shapes,
     read_solids,
-    solid_remarks,
-    solids_of_shapes,
 )
 from workhold.geometry.segment import Line, segment_rows
 from workhold.kernels.base.distance import is_inside, outline_distances
 from workhold.model.solid import FileSolid
 
 __all__ = [
-    "drawing_of",
-    "plain",
+    "restore_drawing",
+    "read_as_plain_data",
     "prepare",
     "read_shapes",
     "read_solid",
@@ -59,12 +65,12 @@ __all__ = [
 
 
 def read_step_apart(content: bytes, **options: Any) -> Drawing:
-    """Runs :func:`read_step` in a process of its own: damaged files crash or hang the library."""
-    return drawing_of(run_apart(__name__, content, options, "the STEP file"))
+    """Run :func:`read_step` in a process of its own: damaged files crash or hang the library."""
+    return restore_drawing(run_apart(__name__, content, options, "the STEP file"))
 
 
-def drawing_of(answered: Any) -> Drawing:
-    """The drawing of what :func:`plain_drawing` makes."""
+def restore_drawing(answered: Any) -> Drawing:
+    """Return the drawing of what :func:`convert_drawing_to_data` makes."""
     chains = [
         Chain(tuple((x, y) for x, y in points), tuple(bulges), tuple(labels))
         for points, bulges, labels in answered[0]
@@ -78,7 +84,7 @@ def drawing_of(answered: Any) -> Drawing:
 
 
 def prepare() -> None:
-    """Loads the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
+    """Load the library, and compile what the reader calls, see :func:`workhold.files.apart.run_apart`."""
     load_step_library()
     rows = segment_rows(
         [Line((0.0, 0.0), (1.0, 0.0)), Line((1.0, 0.0), (0.0, 1.0)), Line((0.0, 1.0), (0.0, 0.0))]
@@ -87,16 +93,16 @@ def prepare() -> None:
     outline_distances(np.zeros((1, 2)), rows)
 
 
-def plain(content: bytes, **options: Any) -> Any:
-    """Chains and remarks of :func:`read_step` as plain data.
+def read_as_plain_data(content: bytes, **options: Any) -> Any:
+    """Return the chains and remarks of :func:`read_step` as plain data.
 
     Refuses a file over which the library or the arithmetic after it fails, too.
     """
-    return guarded(lambda: plain_drawing(read_step(content, **options)))
+    return read_guarded(lambda: convert_drawing_to_data(read_step(content, **options)))
 
 
-def plain_drawing(drawing: Drawing) -> Any:
-    """A drawing as plain data, see :func:`drawing_of`."""
+def convert_drawing_to_data(drawing: Drawing) -> Any:
+    """Return a drawing as plain data, see :func:`restore_drawing`."""
     chains = [[chain.points, chain.bulges, chain.labels] for chain in drawing.chains]
     curves = [
         [label, one.place, one.departure, one.is_disguise, one.pieces.tolist(), one.arcs]
@@ -113,7 +119,7 @@ def read_step(
     part_number: int | str | None = None,
     fit: float | None = None,
 ) -> Drawing:
-    """Reads the outline of a solid in a STEP file.
+    """Read the outline of a solid in a STEP file.
 
     Parameters
     ----------
@@ -134,7 +140,7 @@ def read_step(
     """
     solids = read_solids(content)
     drawing = read_solid(solids, axis, section_height, part_number, fit)
-    remarks = (*lost_remarks(content, solids), *drawing.remarks)
+    remarks = (*describe_lost_solids(content, solids), *drawing.remarks)
     return evolve(drawing, remarks=remarks, solids=tuple(solid.listed for solid in solids))
 
 
@@ -145,44 +151,45 @@ def read_solid(
     part_number: int | str | None,
     fit: float | None,
 ) -> Drawing:
-    """The outline of one of some solids, see :func:`read_step`."""
-    axis = axis_named(axis)
-    solid = chosen_solid(solids, part_number)
-    shape = along(solid.shape, axis)
-    faces = solid_faces(shape)
-    layers = layers_of(faces)
+    """Return the outline of one of some solids, see :func:`read_step`."""
+    axis = check_axis_name(axis)
+    solid = choose_solid(solids, part_number)
+    shape = turn_axis_up(solid.shape, axis)
+    faces = list_solid_faces(shape)
+    layers = make_layers(faces)
     if section_height is None:
-        region = silhouette(shape, solid.volume, faces, layers)
+        region = compute_silhouette(shape, solid.volume, faces, layers)
     else:
-        region = chosen_section(shape, faces, section_height)
-    edges = borders(region, fit)
-    outline = Outline.of(edges, area_of(region), faces)
+        region = make_section_at_height(shape, faces, section_height)
+    edges = trace_borders(region, fit)
+    outline = Outline.from_borders(edges, measure_area(region), faces)
     if section_height is None:
         refuse_overhang(outline, faces, solid.shape, axis)
     remarks = [
-        *solid_remarks(solids, solid, part_number),
+        *describe_other_solids(solids, solid, part_number),
         *edges.remarks,
-        *departure_remarks(outline, faces, layers, shape, solid.shape, axis, section_height),
+        *describe_departures(outline, faces, layers, shape, solid.shape, axis, section_height),
     ]
     return Drawing(edges.chains, tuple(remarks), edges.curves)
 
 
-def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
-    """The union of everything flat that the silhouette must hold.
+def compute_silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Sequence[Layer]) -> Any:
+    """Return the union of everything flat that the silhouette must hold.
 
     Refuses a solid that the library cannot cut, and sections that it cannot unite.
     """
     prismatic = [layer for layer in layers if layer.prismatic]
-    regions = [section(shape, layer.middle) for layer in prismatic]
+    regions = [cut_solid_at_height(shape, layer.middle) for layer in prismatic]
     if len(prismatic) == len(layers):
         swept = sum(
-            area_of(region) * (layer.high - layer.low) for region, layer in zip(regions, layers, strict=True)
+            measure_area(region) * (layer.high - layer.low)
+            for region, layer in zip(regions, layers, strict=True)
         )
         free = any(face.is_free for face in faces)
         refuse_missing_volume(swept, volume, FREE_VOLUME if free else SAME_VOLUME)
     for face in faces:
         if face.lie == "level" and not has_layer(layers, face.low, below=face.upward):
-            regions.append(level_region(face.shape, face.low, face.upward))
+            regions.append(make_level_region(face.shape, face.low, face.upward))
     edges = {z for layer in layers for z in (layer.low, layer.high)}
     folds = {face.fold for face in faces if face.fold is not None and face.low <= face.fold <= face.high}
     widest = -inf
@@ -194,16 +201,18 @@ def silhouette(shape: Any, volume: float, faces: Sequence[SolidFace], layers: Se
             and z > widest + SAME_HEIGHT
         ):
             widest = z
-            regions.append(section(shape, z))
+            regions.append(cut_solid_at_height(shape, z))
     if not regions:
         # The widest piece of a section is in the silhouette too, and shows how far the part departs from it.
-        middles = (section(shape, layer.middle) for layer in layers)
-        regions = [max((face for middle in middles for face in sub_shapes(middle, "FACE")), key=area_of)]
-    return union(regions)
+        middles = (cut_solid_at_height(shape, layer.middle) for layer in layers)
+        regions = [
+            max((face for middle in middles for face in list_sub_shapes(middle, "FACE")), key=measure_area)
+        ]
+    return unite_regions(regions)
 
 
 def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None:
-    """Refuses a solid whose sections do not fill it: it is open, or runs through itself. Volumes are in mm³."""
+    """Refuse a solid whose sections do not fill it: it is open, or runs through itself. Volumes are in mm³."""
     if abs(swept - volume) > tolerance * volume:
         raise InputError(
             f"the sections of the solid fill {swept:.6g} mm³, but it says to have {volume:.6g} mm³: repair "
@@ -212,7 +221,7 @@ def refuse_missing_volume(swept: float, volume: float, tolerance: float) -> None
 
 
 def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
-    """Whether a prismatic layer ends at z from below, or begins there, or holds z."""
+    """Return whether a prismatic layer ends at z from below, or begins there, or holds z."""
     return any(
         abs((layer.high if below else layer.low) - z) <= 2 * SAME_HEIGHT or layer.low < z < layer.high
         for layer in layers
@@ -220,8 +229,8 @@ def has_layer(layers: Sequence[Layer], z: float, *, below: bool) -> bool:
     )
 
 
-def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
-    """The section at a height above the lowest point.
+def make_section_at_height(shape: Any, faces: Sequence[SolidFace], height: float) -> Any:
+    """Return the section at a height above the lowest point.
 
     Refuses a height outside the part or at a level face, and a section that falls into pieces.
     """
@@ -236,8 +245,8 @@ def chosen_section(shape: Any, faces: Sequence[SolidFace], height: float) -> Any
         raise InputError(
             f"at the section height {height:g} lies a level face: give a height a little above or below."
         )
-    region = section(shape, z)
-    pieces = len(sub_shapes(region, "FACE"))
+    region = cut_solid_at_height(shape, z)
+    pieces = len(list_sub_shapes(region, "FACE"))
     if pieces > 1:
         raise InputError(
             f"the section at height {height:g} falls into {pieces} pieces: give a height where the part is "
@@ -254,33 +263,38 @@ def read_shapes(
     part_number: int | str | None = None,
     fit: float | None = None,
 ) -> tuple[Drawing, int | str | None]:
-    """The drawing of some shapes, and the number of the part that is still to be taken of it.
+    """Return the drawing of some shapes, and the number of the part that is still to be taken of it.
 
     Shapes are those of Open CASCADE, in mm. For the choices see :func:`workhold.files.step.reader.read_step`;
     faces that are level need no axis. Refuses shapes without solids and faces, and faces that are not flat,
     or not at one height along an axis.
     """
-    solids = solids_of_shapes(shapes)
+    solids = list_solids_of_shapes(shapes)
     if solids:
         return read_solid(solids, axis, section_height, part_number, fit), None
-    faces = [face for shape in shapes for face in sub_shapes(shape, "FACE")]
+    faces = [face for shape in shapes for face in list_sub_shapes(shape, "FACE")]
     if not faces:
         raise InputError("the shape has neither a face nor a solid: make a face of its outline first.")
     if section_height is not None:
         raise InputError("a section is taken of solids, and this is a face: leave the section out.")
-    axes = [axis_named(axis)] if axis else [*AXES]
-    views = [[one for face in faces for one in sub_shapes(along(face, name), "FACE")] for name in axes]
-    level = [view for view in views if lie_level(view)]
+    axes = [check_axis_name(axis)] if axis else [*AXES]
+    views = [
+        [one for face in faces for one in list_sub_shapes(turn_axis_up(face, name), "FACE")] for name in axes
+    ]
+    level = [view for view in views if are_level_and_coplanar(view)]
     if not level:
         raise InputError(
             f"the faces are not flat, level to an axis and at one height: move them there, or give {AXIS}."
         )
-    edges = borders(union([level_region(face, bounding_box(face)[0][2], True) for face in level[0]]), fit)
+    edges = trace_borders(
+        unite_regions([make_level_region(face, compute_bounding_box(face)[0][2], True) for face in level[0]]),
+        fit,
+    )
     return Drawing(edges.chains, edges.remarks, edges.curves), part_number
 
 
-def lie_level(faces: Sequence[Any]) -> bool:
-    """Whether faces are flat and level, all at one height."""
+def are_level_and_coplanar(faces: Sequence[Any]) -> bool:
+    """Return whether faces are flat and level, all at one height."""
     surfaces = [occ.BRepAdaptor_Surface(face) for face in faces]
     if any(surface.GetType() != occ.GeomAbs_Plane for surface in surfaces):
         return False

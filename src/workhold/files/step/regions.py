@@ -15,18 +15,26 @@ from attrs import frozen
 
 from workhold.conventions import EDGE_GAP, SHORTEST
 from workhold.errors import InputError
-from workhold.files.outline.chain import Chain, CurveReading, arc_bulges, rebulged
+from workhold.files.outline.chain import Chain, CurveReading, compute_moved_bulge, list_arc_bulges
 from workhold.files.outline.curves import CurveReader
 from workhold.files.questions import SECTION
-from workhold.files.step.library import bounding_box, occ, raised, sub_shapes
+from workhold.files.step.library import compute_bounding_box, list_sub_shapes, occ, raise_shape
 from workhold.geometry.rational import Pieces, split_spline
 from workhold.geometry.segment import Point
 
-__all__ = ["Borders", "area_of", "borders", "edge_curve", "level_region", "section", "union"]
+__all__ = [
+    "Borders",
+    "measure_area",
+    "trace_borders",
+    "convert_edge_to_pieces",
+    "make_level_region",
+    "cut_solid_at_height",
+    "unite_regions",
+]
 
 
-def edge_curve(edge: Any) -> Pieces:
-    """The pieces of an edge's curve, seen from above, in its own direction.
+def convert_edge_to_pieces(edge: Any) -> Pieces:
+    """Return the pieces of an edge's curve, seen from above, in its own direction.
 
     Refuses an edge of which the library knows no curve, or none that can be used as a spline.
     """
@@ -78,53 +86,55 @@ class Borders:
         return (closed,) if self.gap > EDGE_GAP else ()
 
 
-def section(solid: Any, z: float) -> Any:
-    """The region in which the plane at height z cuts a solid."""
-    (x0, y0, _), (x1, y1, _) = bounding_box(solid)
+def cut_solid_at_height(solid: Any, z: float) -> Any:
+    """Return the region in which the plane at height z cuts a solid."""
+    (x0, y0, _), (x1, y1, _) = compute_bounding_box(solid)
     more = max(x1 - x0, y1 - y0)
     plane = occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, z), occ.gp_Dir(0.0, 0.0, 1.0))
     sheet = occ.BRepBuilderAPI_MakeFace(plane, x0 - more, x1 + more, y0 - more, y1 + more).Face()
     cut = occ.BRepAlgoAPI_Common(sheet, solid).Shape()
-    if not sub_shapes(cut, "FACE"):
+    if not list_sub_shapes(cut, "FACE"):
         raise InputError(
             "the solid cannot be cut by a plane: repair it in the CAD program and export it again."
         )
-    return raised(cut, -z)
+    return raise_shape(cut, -z)
 
 
-def level_region(face: Any, z: float, upward: bool) -> Any:
-    """A level face at height z as a region: the section of the prism over it.
+def make_level_region(face: Any, z: float, upward: bool) -> Any:
+    """Return a level face at height z as a region: the section of the prism over it.
 
     The face itself would not do. Faces that look different ways do not become one in a union.
     """
     height = 1.0 if upward else -1.0
-    return section(occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2)
+    return cut_solid_at_height(
+        occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, height)).Shape(), z + height / 2
+    )
 
 
-def area_of(region: Any) -> float:
-    """Area in mm²."""
+def measure_area(region: Any) -> float:
+    """Return the area in mm²."""
     properties = occ.GProp_GProps()
     occ.BRepGProp.SurfaceProperties_s(region, properties)
     return abs(float(properties.Mass()))
 
 
-def union(regions: Sequence[Any]) -> Any:
-    """The union of regions.
+def unite_regions(regions: Sequence[Any]) -> Any:
+    """Return the union of regions.
 
     A region that holds all others is returned as it is, so that its curves stay untouched. Refuses areas that
     do not add up: then the library's union cannot be right.
     """
-    ordered = sorted(regions, key=area_of, reverse=True)
+    ordered = sorted(regions, key=measure_area, reverse=True)
     whole = ordered[0]
     for region in ordered[1:]:
-        more = area_of(occ.BRepAlgoAPI_Cut(region, whole).Shape())
-        size = area_of(whole)
+        more = measure_area(occ.BRepAlgoAPI_Cut(region, whole).Shape())
+        size = measure_area(whole)
         if more <= 1e-9 * size:
             continue
         fuse = occ.BRepAlgoAPI_Fuse(whole, region)
         fuse.SimplifyResult()
         whole = fuse.Shape()
-        if abs(area_of(whole) - size - more) > 1e-6 * size:
+        if abs(measure_area(whole) - size - more) > 1e-6 * size:
             raise InputError(
                 "the sections of the solid cannot be united: repair it in the CAD program, or give "
                 f"{SECTION}."
@@ -132,27 +142,27 @@ def union(regions: Sequence[Any]) -> Any:
     return whole
 
 
-def borders(region: Any, fit: float | None = None) -> Borders:
-    """The borders of a region as closed chains of lines and arcs.
+def trace_borders(region: Any, fit: float | None = None) -> Borders:
+    """Return the borders of a region as closed chains of lines and arcs.
 
     ``fit`` is how far they may be from curves that are neither, see ``files.outline.curves``.
     """
     chains: list[Chain] = []
     curves = CurveReader(fit)
     gap = 0.0
-    for wire in sub_shapes(region, "WIRE"):
+    for wire in list_sub_shapes(region, "WIRE"):
         pieces: list[Piece] = []
         edges = occ.BRepTools_WireExplorer(wire)
         while edges.More():
             label = f"curved edge {len(pieces)} of border {len(chains)}"
-            piece = edge_piece(edges.Current(), curves, label)
+            piece = make_edge_piece(edges.Current(), curves, label)
             if piece is not None:
                 pieces.append(piece)
             edges.Next()
         if not pieces:
             # A line on which something else touches the face from within bounds nothing.
             continue
-        chain, chain_gap = closed(pieces, len(chains))
+        chain, chain_gap = close_pieces(pieces, len(chains))
         chains.append(chain)
         gap = max(gap, chain_gap)
     return Borders(tuple(chains), curves.found, gap)
@@ -162,8 +172,8 @@ def borders(region: Any, fit: float | None = None) -> Borders:
 Piece = tuple[list[Point], list[float], str | None]
 
 
-def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
-    """An edge in the direction its wire runs; None for an edge of zero length.
+def make_edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
+    """Return an edge in the direction its wire runs; None for an edge of zero length.
 
     Refuses an edge that cannot be read.
     """
@@ -172,15 +182,15 @@ def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     kind = curve.GetType()
     name = None
     if kind == occ.GeomAbs_Line:
-        points, bulges = points_of(curve, [first, last]), [0.0]
+        points, bulges = compute_curve_points(curve, [first, last]), [0.0]
         if dist(points[0], points[-1]) < SHORTEST:
             return None
     elif kind == occ.GeomAbs_Circle:
         up = curve.Circle().Axis().Direction().Z()
-        bulges = arc_bulges((last - first) * (1.0 if up > 0 else -1.0))
-        points = points_of(curve, list(np.linspace(first, last, len(bulges) + 1)))
+        bulges = list_arc_bulges((last - first) * (1.0 if up > 0 else -1.0))
+        points = compute_curve_points(curve, list(np.linspace(first, last, len(bulges) + 1)))
     else:
-        read = curves.read(edge_curve(edge), label)
+        read = curves.read(convert_edge_to_pieces(edge), label)
         if read is None:
             return None
         name, points, bulges = label, list(read.points), list(read.bulges)
@@ -189,14 +199,14 @@ def edge_piece(edge: Any, curves: CurveReader, label: str) -> Piece | None:
     return points, bulges, name
 
 
-def points_of(curve: Any, parameters: Sequence[float]) -> list[Point]:
-    """Points (x, y) of a curve."""
+def compute_curve_points(curve: Any, parameters: Sequence[float]) -> list[Point]:
+    """Return the points (x, y) of a curve."""
     values = [curve.Value(float(t)) for t in parameters]
     return [(value.X(), value.Y()) for value in values]
 
 
-def closed(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
-    """One closed chain of pieces in running order, and the largest gap closed; arcs keep their centres."""
+def close_pieces(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
+    """Return one closed chain of pieces in running order, and the largest gap closed; arcs keep their centres."""
     points: list[Point] = []
     bulges: list[float] = []
     labels: list[str] = []
@@ -205,7 +215,11 @@ def closed(pieces: Sequence[Piece], number: int) -> tuple[Chain, float]:
         following, end = pieces[(k + 1) % len(pieces)][0][0], own[-1]
         step = dist(following, end)
         gap = max(gap, step)
-        last = own_bulges[-1] if step == 0 else rebulged(own[-2], end, own_bulges[-1], own[-2], following)
+        last = (
+            own_bulges[-1]
+            if step == 0
+            else compute_moved_bulge(own[-2], end, own_bulges[-1], own[-2], following)
+        )
         labels += [name or f"edge {len(bulges)} of border {number}"] * len(own_bulges)
         points += own[:-1]
         bulges += [*own_bulges[:-1], last]

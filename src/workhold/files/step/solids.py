@@ -18,25 +18,31 @@ from typing import Any
 
 from attrs import astuple, evolve, frozen
 
-from workhold.errors import InputError, shortened
-from workhold.errors import plain as plain_text
+from workhold.errors import InputError, shorten_middle
+from workhold.errors import make_printable as plain_text
 from workhold.files.apart import run_apart
 from workhold.files.questions import PART_NUMBER
-from workhold.files.step.library import bounding_box, guarded, load_step_library, occ, sub_shapes
+from workhold.files.step.library import (
+    compute_bounding_box,
+    list_sub_shapes,
+    load_step_library,
+    occ,
+    read_guarded,
+)
 from workhold.limits import MOST_LENGTH
 from workhold.model.solid import FileSolid
 
 __all__ = [
     "Solid",
-    "chosen_solid",
-    "listed_solids",
-    "lost_remarks",
-    "numbered",
-    "plain",
+    "choose_solid",
+    "list_solids",
+    "describe_lost_solids",
+    "number_solids",
+    "read_as_plain_data",
     "prepare",
     "read_solids",
-    "solid_remarks",
-    "solids_of_shapes",
+    "describe_other_solids",
+    "list_solids_of_shapes",
 ]
 
 SOLID_LIST = 10
@@ -75,7 +81,7 @@ class Solid:
 
 
 def read_solids(content: bytes) -> tuple[Solid, ...]:
-    """Every solid of a STEP file, wherever assemblies place it, by decreasing volume.
+    """Return every solid of a STEP file, wherever assemblies place it, by decreasing volume.
 
     Refuses files that are no STEP, damaged, without a unit of length, or without a solid.
     """
@@ -83,66 +89,66 @@ def read_solids(content: bytes) -> tuple[Solid, ...]:
     refuse_other_formats(content)
     reader = read_through(content)
     shape = reader.OneShape()
-    found = sub_shapes(shape, "SOLID")
-    named = named_shapes(reader) if len(found) > 1 else None
-    solids = numbered(found) if named is None else numbered(*zip(*named, strict=True))
+    found = list_sub_shapes(shape, "SOLID")
+    named = list_named_shapes(reader) if len(found) > 1 else None
+    solids = number_solids(found) if named is None else number_solids(*zip(*named, strict=True))
     if not solids:
-        if counted_in_text(content):
+        if count_solids_in_text(content):
             raise InputError(
                 "no solid of the STEP file can be read: repair it in a CAD program and export it again."
             )
-        sheets = len(sub_shapes(shape, "FACE"))
+        sheets = len(list_sub_shapes(shape, "FACE"))
         held = f"surfaces ({sheets}) but no solid" if sheets else "no solid"
         raise InputError(f"the STEP file holds {held}: export the part as a closed solid.")
     return solids
 
 
-def listed_solids(content: bytes) -> tuple[FileSolid, ...]:
-    """The solids of the bytes of a STEP file, read in a process of its own."""
+def list_solids(content: bytes) -> tuple[FileSolid, ...]:
+    """Return the solids of the bytes of a STEP file, read in a process of its own."""
     return tuple(FileSolid(*one) for one in run_apart(__name__, content, {}, "the STEP file"))
 
 
 def prepare() -> None:
-    """Loads the library, see :func:`workhold.files.apart.run_apart`."""
+    """Load the library, see :func:`workhold.files.apart.run_apart`."""
     load_step_library()
 
 
-def plain(content: bytes) -> Any:
-    return guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
+def read_as_plain_data(content: bytes) -> Any:
+    return read_guarded(lambda: [astuple(solid.listed) for solid in read_solids(content)], ValueError)
 
 
-def numbered(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
-    """Solids of Open CASCADE by decreasing volume, with their names where these are known."""
+def number_solids(shapes: Sequence[Any], names: Sequence[str] = ()) -> tuple[Solid, ...]:
+    """Return the solids of Open CASCADE by decreasing volume, with their names where these are known."""
     called = names or [""] * len(shapes)
-    found = [evolve(measured(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
+    found = [evolve(measure_solid(shape), name=name) for shape, name in zip(shapes, called, strict=True)]
     solids = sorted(found, key=lambda solid: (-solid.volume, solid.low, solid.high))
     return tuple(evolve(solid, number=number) for number, solid in enumerate(solids, start=1))
 
 
-def solids_of_shapes(shapes: Sequence[Any]) -> tuple[Solid, ...]:
-    """Every solid of some shapes of Open CASCADE, by decreasing volume; none of shapes without one."""
+def list_solids_of_shapes(shapes: Sequence[Any]) -> tuple[Solid, ...]:
+    """Return every solid of some shapes of Open CASCADE, by decreasing volume; none of shapes without one."""
     load_step_library()
-    return numbered([solid for shape in shapes for solid in sub_shapes(shape, "SOLID")])
+    return number_solids([solid for shape in shapes for solid in list_sub_shapes(shape, "SOLID")])
 
 
-def counted_in_text(content: bytes) -> int:
-    """How many solids stand in the text of a STEP file, before assemblies repeat them."""
+def count_solids_in_text(content: bytes) -> int:
+    """Return how many solids stand in the text of a STEP file, before assemblies repeat them."""
     return len(re.findall(rb"=\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP)\s*\(", content))
 
 
-def lost_remarks(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
-    """What to say about solids that the library could not make of the file's text."""
-    if counted_in_text(content) <= len(solids):
+def describe_lost_solids(content: bytes, solids: tuple[Solid, ...]) -> list[str]:
+    """Return what to say about solids that the library could not make of the file's text."""
+    if count_solids_in_text(content) <= len(solids):
         return []
     return [
-        f"The file names {counted_in_text(content)} solids, but only {len(solids)} could be read: "
+        f"The file names {count_solids_in_text(content)} solids, but only {len(solids)} could be read: "
         "check that yours "
         "is there."
     ]
 
 
 def refuse_other_formats(content: bytes) -> None:
-    """Refuses what is plainly no STEP file, is cut short, or has no unit (the library would take mm)."""
+    """Refuse what is plainly no STEP file, is cut short, or has no unit (the library would take mm)."""
     if content.startswith(b"PK"):
         raise InputError("this is a compressed file, not a STEP file: unpack it first.")
     if b"ISO-10303-21" not in content[:4096]:
@@ -157,7 +163,7 @@ def refuse_other_formats(content: bytes) -> None:
 
 
 def read_through(content: bytes) -> Any:
-    """A reader of the library that has read the file, and has one shape of everything in it."""
+    """Return a reader of the library that has read the file, and has one shape of everything in it."""
     reader = occ.STEPControl_Reader()
     try:
         status = reader.ReadStream("part", BytesIO(content))
@@ -171,15 +177,15 @@ def read_through(content: bytes) -> Any:
     raise InputError("the STEP file holds no solid: export the part as a closed solid.")
 
 
-def measured(shape: Any) -> Solid:
-    """A solid with its volume and bounding box; its number comes later.
+def measure_solid(shape: Any) -> Solid:
+    """Return a solid with its volume and bounding box; its number comes later.
 
     Refuses one that has no volume, or coordinates that leave no digits.
     """
     properties = occ.GProp_GProps()
     occ.BRepGProp.VolumeProperties_s(shape, properties)
     volume = abs(properties.Mass())
-    low, high = bounding_box(shape)
+    low, high = compute_bounding_box(shape)
     if not all(isfinite(value) and abs(value) <= MOST_LENGTH for value in (*low, *high)):
         raise InputError("a solid lies more than 1 km from the origin or has no end: check the part's unit.")
     if not (isfinite(volume) and volume > 1e-9):
@@ -187,27 +193,27 @@ def measured(shape: Any) -> Solid:
     return Solid(0, shape, volume, low, high)
 
 
-def chosen_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
-    """The solid of a number or a name, or the largest; refuses a name that several solids have."""
+def choose_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
+    """Return the solid of a number or a name, or the largest; refuse a name that several solids have."""
     if number is None:
         return solids[0]
     if isinstance(number, str):
-        return solid_called(solids, number)
+        return find_solid_by_name(solids, number)
     if not 1 <= number <= len(solids):
         have = "only one solid" if len(solids) == 1 else f"solids 1 to {len(solids)}"
         raise InputError(f"There is no part {number}: the file holds {have}, numbered by decreasing volume.")
     return solids[number - 1]
 
 
-def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
-    """The only solid of a name, as it is written, or else in any mixture of capitals.
+def find_solid_by_name(solids: tuple[Solid, ...], name: str) -> Solid:
+    """Return the only solid of a name, as it is written, or else in any mixture of capitals.
 
     Where there is none the refusal names those that are close, and where there are several their numbers.
     """
     if len(solids) == 1:
         raise InputError(f"the STEP file holds only one solid: leave {PART_NUMBER} out.")
     asked = " ".join(name.split())
-    shown = shortened(plain_text(asked))
+    shown = shorten_middle(plain_text(asked))
     found = [solid for solid in solids if solid.name == asked]
     found = found or [solid for solid in solids if solid.name.casefold() == asked.casefold()]
     if len(found) == 1:
@@ -232,7 +238,7 @@ def solid_called(solids: tuple[Solid, ...], name: str) -> Solid:
     )
 
 
-def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | None) -> list[str]:
+def describe_other_solids(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | None) -> list[str]:
     if len(solids) == 1:
         return []
     more = f"; and {len(solids) - SOLID_LIST} smaller ones" if len(solids) > SOLID_LIST else ""
@@ -241,8 +247,8 @@ def solid_remarks(solids: tuple[Solid, ...], chosen: Solid, asked: int | str | N
     return [f"The file holds {len(solids)} solids: {listing}{more}. Solid {chosen.number} is used{because}."]
 
 
-def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
-    """Every solid of what a reader of STEP files has read, with its name; empty where it has none.
+def list_named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
+    """Return every solid of what a reader of STEP files has read, with its name; empty where it has none.
 
     None where the library does not know: the solids are those of the reader then, without names.
     """
@@ -256,31 +262,33 @@ def named_shapes(reader: Any) -> list[tuple[Any, str]] | None:
             return None
         process = naming.ChangeReader().WS().TransferReader()
         found = []
-        for label in children(occ.XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
+        for label in list_child_labels(occ.XCAFDoc_DocumentTool.ShapesLabel_s(document.Main())):
             if occ.XCAFDoc_ShapeTool.IsFree_s(label):
-                for product, names in places_under(label, occ.TopLoc_Location(), ()):
-                    solids = sub_shapes(product, "SOLID")
+                for product, names in list_places_under(label, occ.TopLoc_Location(), ()):
+                    solids = list_sub_shapes(product, "SOLID")
                     found += [(solid, name_of(solid, names, len(solids), process)) for solid in solids]
-        wanted = Counter(map(position, sub_shapes(reader.OneShape(), "SOLID")))
-        return found if Counter(position(solid) for solid, _ in found) == wanted else None
+        wanted = Counter(map(round_position, list_sub_shapes(reader.OneShape(), "SOLID")))
+        return found if Counter(round_position(solid) for solid, _ in found) == wanted else None
     return None
 
 
-def position(shape: Any) -> tuple[float, ...]:
-    """Where a solid is placed, rounded so that two readings of a file agree."""
+def round_position(shape: Any) -> tuple[float, ...]:
+    """Return where a solid is placed, rounded so that two readings of a file agree."""
     move = shape.Location().Transformation()
     return tuple(round(move.Value(row, column), 6) for row in (1, 2, 3) for column in (1, 2, 3, 4))
 
 
-def children(label: Any) -> Iterator[Any]:
+def list_child_labels(label: Any) -> Iterator[Any]:
     at = occ.TDF_ChildIterator(label, False)
     while at.More():
         yield at.Value()
         at.Next()
 
 
-def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[tuple[Any, tuple[str, ...]]]:
-    """Every place in which a product without others in it is used, at a label or below.
+def list_places_under(
+    label: Any, moved: Any, names: tuple[str, ...]
+) -> Iterator[tuple[Any, tuple[str, ...]]]:
+    """Yield every place in which a product without others in it is used, at a label or below.
 
     The assemblies around it have names, and place it by ``moved``. Yields the product's shape there, and
     names from the outermost assembly inward.
@@ -290,29 +298,29 @@ def places_under(label: Any, moved: Any, names: tuple[str, ...]) -> Iterator[tup
         product = occ.TDF_Label()
         occ.XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
         moved = moved.Multiplied(occ.XCAFDoc_ShapeTool.GetLocation_s(label))
-    names = (*names, called(label), called(product))
+    names = (*names, read_label_name(label), read_label_name(product))
     if not occ.XCAFDoc_ShapeTool.IsAssembly_s(product):
         yield occ.XCAFDoc_ShapeTool.GetShape_s(product).Moved(moved), names
         return
-    for below in children(product):
+    for below in list_child_labels(product):
         if occ.XCAFDoc_ShapeTool.IsComponent_s(below):
-            yield from places_under(below, moved, names)
+            yield from list_places_under(below, moved, names)
 
 
-def called(label: Any) -> str:
-    """The name at a label; empty where it says nothing."""
+def read_label_name(label: Any) -> str:
+    """Return the name at a label; empty where it says nothing."""
     name = occ.TDataStd_Name()
     has_name = label.FindAttribute(occ.TDataStd_Name.GetID_s(), name)
-    return shown_name(name.Get().ToExtString()) if has_name else ""
+    return clean_name(name.Get().ToExtString()) if has_name else ""
 
 
-def shown_name(name: str) -> str:
-    """A name fit to be shown; empty where it says nothing.
+def clean_name(name: str) -> str:
+    """Return a name fit to be shown; empty where it says nothing.
 
-    >>> shown_name(" base  plate "), shown_name("=>[0:1:1:3]"), shown_name("NONE"), shown_name("12")
+    >>> clean_name(" base  plate "), clean_name("=>[0:1:1:3]"), clean_name("NONE"), clean_name("12")
     ('base plate', '', '', '')
     """
-    words = shortened(plain_text(" ".join(name.split())), LONGEST_NAME)
+    words = shorten_middle(plain_text(" ".join(name.split())), LONGEST_NAME)
     return "" if NO_NAME.fullmatch(words) else words
 
 
@@ -320,7 +328,7 @@ def name_of(solid: Any, names: tuple[str, ...], count: int, process: Any) -> str
     own = ""
     with suppress(Exception):
         # Solids are known to the reader without the place that assemblies give them.
-        own = shown_name(
+        own = clean_name(
             process.EntityFromShapeResult(solid.Located(occ.TopLoc_Location()), 1).Name().ToCString()
         )
     # The assembly of all says nothing about one of its solids.

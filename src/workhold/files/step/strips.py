@@ -19,14 +19,14 @@ from math import pi, tan
 from attrs import frozen
 
 from workhold.conventions import SAME_HEIGHT
-from workhold.files.step.bands import Covered, Run, Walls, length
-from workhold.files.step.edge_curves import ONE_HEIGHT, bisected
+from workhold.files.step.bands import Covered, Run, Walls, measure_band
+from workhold.files.step.edge_curves import ONE_HEIGHT, bisect_condition
 from workhold.geometry.loop import cut_into_runs
 from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band, RunRows, run_at
 
-__all__ = ["Strip", "run_rows", "strips_of_loop"]
+__all__ = ["Strip", "run_rows", "make_strips"]
 
 # Ends of runs that differ by less, in mm, go on from piece to piece.
 SAME_BAND = 1e-5
@@ -64,31 +64,31 @@ class Strip:
     covered: tuple[Covered, ...]
 
 
-def strips_of_loop(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
-    """The segments of a loop with their bands, in running order.
+def make_strips(loop: Sequence[BorderPiece], walls: Walls, least: float) -> list[Strip]:
+    """Return the segments of a loop with their bands, in running order.
 
     So are the loop's pieces, see ``geometry.subdivision``. ``least`` is the shortest band in mm that may be
     touched.
     """
-    pieces = [walls.covered(piece) for piece in loop]
-    stretches: Sequence[Stretch] = cut_into_runs(pieces, lambda a, b: continues(a, b, least))
-    if len(stretches) == 1 and continues(pieces[-1], pieces[0], least):
-        stretches = list(opened(pieces, least))
-    return [strip for stretch in stretches for strip in strips_of_stretch(stretch, least)]
+    pieces = [walls.find_covered(piece) for piece in loop]
+    stretches: Sequence[Stretch] = cut_into_runs(pieces, lambda a, b: continues_piece(a, b, least))
+    if len(stretches) == 1 and continues_piece(pieces[-1], pieces[0], least):
+        stretches = list(cut_whole_circle(pieces, least))
+    return [strip for stretch in stretches for strip in cut_stretch_into_strips(stretch, least)]
 
 
-def continues(before: Covered, after: Covered, least: float) -> bool:
-    """Whether a piece continues another: the same carrier and direction, and no long run is cut.
+def continues_piece(before: Covered, after: Covered, least: float) -> bool:
+    """Return whether a piece continues another: the same carrier and direction, and no long run is cut.
 
     That is one which has none of the same ends on the other side, or an end that jumps. Shorter ones than may
     be touched cut nothing.
     """
     if before.piece.carrier is not after.piece.carrier or before.piece.forward != after.piece.forward:
         return False
-    sides = [at_joint(before, 1), at_joint(after, 0)]
+    sides = [list_runs_at_end(before, 1), list_runs_at_end(after, 0)]
     for own, others in (sides, sides[::-1]):
         for band, off, jumps in own:
-            if length(band) < least - SAME_HEIGHT:
+            if measure_band(band) < least - SAME_HEIGHT:
                 continue
             if jumps or not any(
                 all(abs(a - b) <= off + more for a, b in zip(band, other, strict=True))
@@ -98,8 +98,8 @@ def continues(before: Covered, after: Covered, least: float) -> bool:
     return True
 
 
-def at_joint(covered: Covered, end: int) -> list[tuple[Band, float, bool]]:
-    """The runs at an end of a piece, each with what its ends may be off in mm, and whether one jumps.
+def list_runs_at_end(covered: Covered, end: int) -> list[tuple[Band, float, bool]]:
+    """Return the runs at an end of a piece, each with what its ends may be off in mm, and whether one jumps.
 
     Places are known to what makes two points one, and the ends of a run move over that. The end is 0 for the
     first in the direction of the border, 1 for the last.
@@ -112,27 +112,32 @@ def at_joint(covered: Covered, end: int) -> list[tuple[Band, float, bool]]:
 
     found: list[tuple[Band, float, bool]] = []
     for run in covered.runs:
-        here, there = run.at(position), run.at(beside(STEP))
+        here, there = run.compute_heights_at(position), run.compute_heights_at(beside(STEP))
         jumps = any(
-            one.jumps_at(position, beside(BESIDE), AT_JOINT * carrier.slack) for one in (run.lower, run.upper)
+            one.is_steep_at(position, beside(BESIDE), AT_JOINT * carrier.slack)
+            for one in (run.lower, run.upper)
         )
         moved = max(abs(a - b) for a, b in zip(here, there, strict=True))
         found.append((here, SAME_BAND + moved, jumps))
     return found
 
 
-def opened(pieces: Stretch, least: float) -> Iterator[Stretch]:
-    """A whole circle over which no run jumps, cut where its longest run is shortest, if it is to be cut.
+def cut_whole_circle(pieces: Stretch, least: float) -> Iterator[Stretch]:
+    """Yield a whole circle over which no run jumps, cut where its longest run is shortest, if it is to be
+    cut.
 
     So it is halved at the same places however it is turned, and whichever way round.
     """
-    if is_enough(pieces, common_band(pieces), least) or max(map(most_of, pieces)) < least - SAME_HEIGHT:
+    if (
+        is_enough(pieces, find_common_band(pieces), least)
+        or max(map(bound_run_length, pieces)) < least - SAME_HEIGHT
+    ):
         yield pieces
         return
     places = [
-        (k, place, one.longest_at(place))
+        (k, place, one.measure_longest_run_at(place))
         for k, one in enumerate(pieces)
-        for place in (one.low, *one.inner(), one.high)
+        for place in (one.low, *one.list_inner_positions(), one.high)
     ]
     shortest = min(value for _, _, value in places)
     parts: list[Covered] = []
@@ -141,7 +146,7 @@ def opened(pieces: Stretch, least: float) -> Iterator[Stretch]:
         lowest = [place for number, place, value in places if number == k and value <= shortest + SAME_HEIGHT]
         cuts = [place for place in lowest if min(place - one.low, one.high - place) > one.piece.carrier.slack]
         at_start = any(abs(place - one.ends[0]) <= one.piece.carrier.slack for place in lowest)
-        for number, part in enumerate(one.parts(cuts)):
+        for number, part in enumerate(one.cut_at(cuts)):
             if number or at_start:
                 fresh.add(len(parts))
             parts.append(part)
@@ -149,22 +154,22 @@ def opened(pieces: Stretch, least: float) -> Iterator[Stretch]:
     yield from ([parts[k] for k in run] for run in numbers)
 
 
-def strips_of_stretch(stretch: Stretch, least: float) -> list[Strip]:
-    """A stretch cut where it becomes long enough to be touched, and halved where runs slide."""
+def cut_stretch_into_strips(stretch: Stretch, least: float) -> list[Strip]:
+    """Return a stretch cut where it becomes long enough to be touched, and halved where runs slide."""
     found: list[Strip] = []
-    for part, is_touched in touched_parts(stretch, least):
+    for part, is_touched in split_touched_parts(stretch, least):
         if is_touched:
-            found += halved(part, least)
+            found += halve_stretch(part, least)
         else:
-            found += strips_between(part, None)
-    return joined(found)
+            found += make_strips_over_stretch(part, None)
+    return join_strips(found)
 
 
-def touched_parts(stretch: Stretch, least: float) -> Iterator[tuple[Stretch, bool]]:
-    """The parts of a stretch along which the longest run is long enough, and those along which it is not."""
+def split_touched_parts(stretch: Stretch, least: float) -> Iterator[tuple[Stretch, bool]]:
+    """Yield the parts of a stretch along which the longest run is long enough, and those along which it is not."""
     found: list[tuple[list[Covered], bool]] = []
     for one in stretch:
-        for part, is_touched in touched_pieces(one, least):
+        for part, is_touched in split_touched_pieces(one, least):
             if part.size <= part.piece.carrier.slack:
                 continue
             if found and found[-1][1] == is_touched:
@@ -174,18 +179,20 @@ def touched_parts(stretch: Stretch, least: float) -> Iterator[tuple[Stretch, boo
     yield from found
 
 
-def touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
-    """The parts of a piece along which the longest run is long enough, and those along which it is not."""
-    if most_of(one) < least - SAME_HEIGHT:
+def split_touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
+    """Return the parts of a piece along which the longest run is long enough, and those along which it is not."""
+    if bound_run_length(one) < least - SAME_HEIGHT:
         return [(one, False)]
-    if any(length(run.common(one.low, one.high)) >= least - SAME_HEIGHT for run in one.runs):
+    if any(
+        measure_band(run.compute_common_band(one.low, one.high)) >= least - SAME_HEIGHT for run in one.runs
+    ):
         return [(one, True)]
 
     def spare(position: float) -> float:
-        return one.longest_at(position) - (least - ONE_HEIGHT)
+        return one.measure_longest_run_at(position) - (least - ONE_HEIGHT)
 
-    nodes = [one.low, *one.inner(), one.high]
-    peaks = list(turns_past(one, nodes, spare, least))
+    nodes = [one.low, *one.list_inner_positions(), one.high]
+    peaks = list(find_threshold_positions(one, nodes, spare, least))
     nodes = sorted({*nodes, *peaks})
     # What lacks no more than rounding is long enough, if it is so for a while.
     signs = [spare(node) >= ONE_HEIGHT - SAME_HEIGHT for node in nodes]
@@ -193,16 +200,16 @@ def touched_pieces(one: Covered, least: float) -> list[tuple[Covered, bool]]:
     for (a, b), (first, last) in zip(pairwise(nodes), pairwise(signs), strict=True):
         if first != last:
             sign = 1.0 if last else -1.0
-            ends = bisected(a, b, partial(is_past, spare, sign), (a, b), HALVINGS)
+            ends = bisect_condition(a, b, partial(is_past, spare, sign), (a, b), HALVINGS)
             cuts.append(ends[1] if last else ends[0])
-    parts = one.parts(cuts)
+    parts = one.cut_at(cuts)
     return [(part, spare((part.low + part.high) / 2) >= ONE_HEIGHT - SAME_HEIGHT) for part in parts]
 
 
-def turns_past(
+def find_threshold_positions(
     one: Covered, nodes: Sequence[float], spare: Callable[[float], float], least: float
 ) -> Iterator[float]:
-    """Positions between nodes at which the longest run may be just long enough, or just too short.
+    """Yield the positions between nodes at which the longest run may be just long enough, or just too short.
 
     Between nodes the ends of runs only rise or only fall, and so they bound its length.
     """
@@ -210,18 +217,18 @@ def turns_past(
         first, last = spare(a) >= 0.0, spare(b) >= 0.0
         if first != last:
             continue
-        if first and max(length(run.common(a, b)) for run in one.runs) < least:
-            yield extreme(spare, a, b, -1.0)
-        elif not first and max(run.most(a, b) for run in one.runs) >= least:
-            yield extreme(spare, a, b, 1.0)
+        if first and max(measure_band(run.compute_common_band(a, b)) for run in one.runs) < least:
+            yield find_extreme_place(spare, a, b, -1.0)
+        elif not first and max(run.bound_length(a, b) for run in one.runs) >= least:
+            yield find_extreme_place(spare, a, b, 1.0)
 
 
 def is_past(value: Callable[[float], float], sign: float, position: float) -> bool:
     return sign * value(position) >= 0.0
 
 
-def extreme(value: Callable[[float], float], low: float, high: float, sign: float) -> float:
-    """The place between two others at which a value is greatest, or least for a sign of -1, by halving."""
+def find_extreme_place(value: Callable[[float], float], low: float, high: float, sign: float) -> float:
+    """Return the place between two others at which a value is greatest, or least for a sign of -1, by halving."""
     for _ in range(HALVINGS):
         a, b = low + (high - low) / 3, high - (high - low) / 3
         if sign * value(a) < sign * value(b):
@@ -233,67 +240,72 @@ def extreme(value: Callable[[float], float], low: float, high: float, sign: floa
     return (low + high) / 2
 
 
-def most_of(one: Covered) -> float:
-    """A length in mm that no run of a piece has more of; that of the longest where nothing slides."""
-    return max((run.most(one.low, one.high) for run in one.runs), default=0.0)
+def bound_run_length(one: Covered) -> float:
+    """Return a length in mm that no run of a piece has more of; that of the longest where nothing slides."""
+    return max((run.bound_length(one.low, one.high) for run in one.runs), default=0.0)
 
 
-def longest_of(one: Covered, bound: float) -> float:
-    """Length in mm of the longest run over a piece, or one not above a bound where that is enough to know."""
-    nodes = [one.low, *one.inner(), one.high]
-    best = max(map(one.longest_at, nodes))
+def measure_longest_run(one: Covered, bound: float) -> float:
+    """Return the length in mm of the longest run over a piece, or one not above a bound where that is enough
+    to know.
+    """
+    nodes = [one.low, *one.list_inner_positions(), one.high]
+    best = max(map(one.measure_longest_run_at, nodes))
     for a, b in pairwise(nodes):
-        most = max((run.most(a, b) for run in one.runs), default=0.0)
+        most = max((run.bound_length(a, b) for run in one.runs), default=0.0)
         if best <= bound < most:
-            best = max(best, one.longest_at(extreme(one.longest_at, a, b, 1.0)))
+            best = max(
+                best, one.measure_longest_run_at(find_extreme_place(one.measure_longest_run_at, a, b, 1.0))
+            )
     return best
 
 
-def common_band(stretch: Stretch) -> Band:
-    """The longest range of heights that lies in one run at each point of a stretch; of equal ones the lower.
+def find_common_band(stretch: Stretch) -> Band:
+    """Return the longest range of heights that lies in one run at each point of a stretch; of equal ones the
+    lower.
 
     It is 0 long where there is none.
     """
     bands: list[Band] | None = None
     for one in stretch:
-        own = [run.common(one.low, one.high) for run in one.runs]
-        both = own if bands is None else [overlap(a, b) for a in bands for b in own]
-        bands = [band for band in both if length(band) > 0.0]
+        own = [run.compute_common_band(one.low, one.high) for run in one.runs]
+        both = own if bands is None else [intersect_bands(a, b) for a in bands for b in own]
+        bands = [band for band in both if measure_band(band) > 0.0]
     if not bands:
         return 0.0, 0.0
-    most = max(map(length, bands))
-    return min(band for band in bands if length(band) >= most - ONE_HEIGHT)
+    most = max(map(measure_band, bands))
+    return min(band for band in bands if measure_band(band) >= most - ONE_HEIGHT)
 
 
-def overlap(a: Band, b: Band) -> Band:
-    """What two bands have in common, below 0 long for nothing."""
+def intersect_bands(a: Band, b: Band) -> Band:
+    """Return what two bands have in common, below 0 long for nothing."""
     return max(a[0], b[0]), min(a[1], b[1])
 
 
 def is_enough(stretch: Stretch, band: Band, least: float) -> bool:
-    """Whether the band of a stretch is long enough to be touched, and half as long as the longest run there."""
-    if length(band) < least - SAME_HEIGHT:
+    """Return whether the band of a stretch is long enough to be touched, and half as long as the longest run there."""
+    if measure_band(band) < least - SAME_HEIGHT:
         return False
-    bound = 2 * (length(band) + SAME_HEIGHT)
-    return all(most_of(one) <= bound or longest_of(one, bound) <= bound for one in stretch)
+    bound = 2 * (measure_band(band) + SAME_HEIGHT)
+    return all(bound_run_length(one) <= bound or measure_longest_run(one, bound) <= bound for one in stretch)
 
 
-def halved(stretch: Stretch, least: float) -> list[Strip]:
-    """A stretch halved until its band is long enough, and half as long as the longest run over it."""
-    band = common_band(stretch)
+def halve_stretch(stretch: Stretch, least: float) -> list[Strip]:
+    """Return a stretch halved until its band is long enough, and half as long as the longest run over it."""
+    band = find_common_band(stretch)
     if is_enough(stretch, band, least):
-        return strips_between(stretch, band)
+        return make_strips_over_stretch(stretch, band)
     carrier = stretch[0].piece.carrier
     size = sum(one.size for one in stretch)
     unit = carrier.segment.radius if isinstance(carrier.segment, Arc) else 1.0
     if size * unit < 2 * SHORTEST_STRIP:
-        return strips_between(stretch, band if length(band) >= least - SAME_HEIGHT else None)
+        return make_strips_over_stretch(stretch, band if measure_band(band) >= least - SAME_HEIGHT else None)
     first, second = cut_at(stretch, size / 2)
-    return [*halved(first, least), *halved(second, least)]
+    return [*halve_stretch(first, least), *halve_stretch(second, least)]
 
 
 def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
-    """A stretch up to a place, and from there on.
+    """Return a stretch up to a place, and from there on.
 
     The place is ``size`` from its start, in mm on a line and radians on a circle.
     """
@@ -304,14 +316,14 @@ def cut_at(stretch: Stretch, size: float) -> tuple[Stretch, Stretch]:
             return list(stretch[:k]), list(stretch[k:])
         if left < one.size - slack:
             place = one.low + left if one.piece.forward else one.high - left
-            first, second = one.parts([place])
+            first, second = one.cut_at([place])
             return [*stretch[:k], first], [second, *stretch[k + 1 :]]
         left -= one.size
     return stretch[:-1], stretch[-1:]
 
 
-def joined(strips: Sequence[Strip]) -> list[Strip]:
-    """Strips of a stretch, neighbours with the same band as one."""
+def join_strips(strips: Sequence[Strip]) -> list[Strip]:
+    """Return the strips of a stretch, neighbours with the same band as one."""
     groups: list[list[Strip]] = []
     for strip in strips:
         before = groups[-1][-1].band if groups else ()
@@ -330,12 +342,12 @@ def joined(strips: Sequence[Strip]) -> list[Strip]:
         covered = [one for strip in group for one in strip.covered]
         bands = [strip.band for strip in group if strip.band is not None]
         band = (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
-        found += strips_between(covered, band) if len({id(strip) for strip in group}) > 1 else group
+        found += make_strips_over_stretch(covered, band) if len({id(strip) for strip in group}) > 1 else group
     return found
 
 
-def strips_between(stretch: Stretch, band: Band | None) -> list[Strip]:
-    """The strip over a stretch; two for a wide arc, none for one that comes of rounding."""
+def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]:
+    """Return the strip over a stretch; two for a wide arc, none for one that comes of rounding."""
     carrier, forward = stretch[0].piece.carrier, stretch[0].piece.forward
     begin, size = stretch[0].ends[0], sum(one.size for one in stretch)
     if size <= carrier.slack:
@@ -354,13 +366,13 @@ def strips_between(stretch: Stretch, band: Band | None) -> list[Strip]:
 
 
 def run_rows(strip: Strip) -> RunRows:
-    """The run that holds a strip's band, along the strip; empty where it is the band all along."""
+    """Return the run that holds a strip's band, along the strip; empty where it is the band all along."""
     band = strip.band
     if band is None:
         return ()
-    runs = [holding(one, band) for one in strip.covered]
+    runs = [find_run_holding(one, band) for one in strip.covered]
     ends = [
-        (end.extent(one.low, one.high), own)
+        (end.compute_height_range(one.low, one.high), own)
         for one, run in zip(strip.covered, runs, strict=True)
         for end, own in zip((run.lower, run.upper), band, strict=True)
     ]
@@ -370,7 +382,7 @@ def run_rows(strip: Strip) -> RunRows:
     size, before = sum(one.size for one in strip.covered), 0.0
     for one, run in zip(strip.covered, runs, strict=True):
         first, last = one.ends
-        for position, heights in cubic_pieces(run, one, first, last):
+        for position, heights in split_into_cubics(run, one, first, last):
             rows.append(((before + abs(position - first)) / size, *heights))
         before += one.size
     # Where a piece ends the next begins.
@@ -378,25 +390,29 @@ def run_rows(strip: Strip) -> RunRows:
     return ((0.0, *kept[0][1:]), *kept[1:-1], (1.0, *kept[-1][1:]))
 
 
-def holding(one: Covered, band: Band) -> Run:
-    """The run of a piece that holds a band all along."""
-    shared = [length(overlap(run.common(one.low, one.high), band)) for run in one.runs]
+def find_run_holding(one: Covered, band: Band) -> Run:
+    """Return the run of a piece that holds a band all along."""
+    shared = [
+        measure_band(intersect_bands(run.compute_common_band(one.low, one.high), band)) for run in one.runs
+    ]
     return one.runs[shared.index(max(shared))]
 
 
-def cubic_pieces(run: Run, one: Covered, first: float, last: float) -> Iterator[tuple[float, Band]]:
-    """Four positions with the run's heights for each piece of a run that is two cubics within rounding."""
+def split_into_cubics(run: Run, one: Covered, first: float, last: float) -> Iterator[tuple[float, Band]]:
+    """Yield four positions with the run's heights for each piece of a run that is two cubics within rounding."""
     places = [first + (last - first) * k / 3 for k in range(4)]
-    rows = tuple((k / 3, *run.at(place)) for k, place in enumerate(places))
+    rows = tuple((k / 3, *run.compute_heights_at(place)) for k, place in enumerate(places))
     unit = one.piece.carrier.segment.radius if isinstance(one.piece.carrier.segment, Arc) else 1.0
     is_off = any(
         abs(a - b) > CUBIC
         for share in (1 / 2, 1 / 6, 5 / 6)
-        for a, b in zip(run_at(rows, share), run.at(first + (last - first) * share), strict=True)
+        for a, b in zip(
+            run_at(rows, share), run.compute_heights_at(first + (last - first) * share), strict=True
+        )
     )
     if is_off and abs(last - first) * unit > SHORTEST_PIECE:
         middle = (first + last) / 2
-        yield from cubic_pieces(run, one, first, middle)
-        yield from cubic_pieces(run, one, middle, last)
+        yield from split_into_cubics(run, one, first, middle)
+        yield from split_into_cubics(run, one, middle, last)
         return
     yield from ((place, row[1:]) for place, row in zip(places, rows, strict=True))

@@ -13,11 +13,11 @@ from attrs import frozen
 from workhold.conventions import DOWEL_STANDOUT, SAME_HEIGHT
 from workhold.errors import InputError
 from workhold.files.questions import PEG_HEIGHT
-from workhold.files.step.heights import StandingSolid, measures
+from workhold.files.step.heights import StandingSolid, measure_outline
 from workhold.model.dowel_lengths import find_shortest_dowel, standouts
 from workhold.model.solid import HeightRow, slides_at_every_height
 
-__all__ = ["UsualHeight", "usual_height"]
+__all__ = ["UsualHeight", "choose_usual_height"]
 
 # The share of what the best height touches.
 SHARE = 0.5
@@ -66,7 +66,7 @@ class UsualHeight:
         return [said if self.slides else said + taller]
 
 
-def usual_height(
+def choose_usual_height(
     solid: StandingSolid,
     rows: Sequence[HeightRow],
     diameter: float,
@@ -74,7 +74,7 @@ def usual_height(
     least: float,
     is_prism: bool,
 ) -> UsualHeight:
-    """How high pegs of a diameter reach beside a solid, no higher than they must; lengths in mm.
+    """Return how high pegs of a diameter reach beside a solid, no higher than they must; lengths in mm.
 
     ``rows`` are what other heights offer; of a prism they are not looked at. ``room`` is what is kept free
     above the pegs, and ``least`` the shortest band that may be touched.
@@ -86,7 +86,7 @@ def usual_height(
         if is_prism:
             return height >= least - SAME_HEIGHT
         try:
-            return measures(solid.outline(height, room, least))[2] >= enough * (1 - ROUNDED) > 0
+            return measure_outline(solid.make_outline(height, room, least))[2] >= enough * (1 - ROUNDED) > 0
         except InputError:
             return False
 

@@ -25,7 +25,7 @@ from typing import Any
 from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_other_ending, refuse_output
-from workhold.files.step.library import load_step_library, occ, raised, sub_shapes
+from workhold.files.step.library import list_sub_shapes, load_step_library, occ, raise_shape
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment
 from workhold.model.bodies import COLOURS, THICKNESS, BodyKind, BodySizes, FixtureBody, list_fixture_bodies
@@ -37,11 +37,11 @@ from workhold.model.workpiece import Workpiece
 
 __all__ = [
     "Colour",
-    "bodies_step",
-    "coloured",
-    "named_solids",
-    "plates_step",
-    "setup_step",
+    "make_bodies_step",
+    "add_colours",
+    "make_named_solids",
+    "make_plates_step",
+    "make_setup_step",
     "write_setup_step",
 ]
 
@@ -72,7 +72,7 @@ def write_setup_step(
     zero: PartZero | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Writes a set-up as a STEP assembly; the same set-up gives the same bytes.
+    """Write a set-up as a STEP assembly; the same set-up gives the same bytes.
 
     Parameters
     ----------
@@ -99,10 +99,10 @@ def write_setup_step(
         "peg_length": peg_length,
         "peg_height": peg_height,
     }
-    write_bytes(path, setup_step(fixture, workpiece, toolkit, zero=zero, **sizes))
+    write_bytes(path, make_setup_step(fixture, workpiece, toolkit, zero=zero, **sizes))
 
 
-def setup_step(
+def make_setup_step(
     fixture: Fixture,
     workpiece: Workpiece,
     toolkit: Toolkit,
@@ -110,15 +110,15 @@ def setup_step(
     zero: PartZero | None = None,
     **sizes: Any,
 ) -> bytes:
-    """The bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`."""
+    """Return the bytes of a set-up's STEP assembly; the sizes are lengths of :func:`write_setup_step`."""
     bodies = list_fixture_bodies(fixture, workpiece, toolkit, BodySizes.of(workpiece, **sizes))
-    return bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
+    return make_bodies_step(bodies, toolkit, (zero or part_zero(workpiece)).point, fixture.pose)
 
 
-def bodies_step(
+def make_bodies_step(
     bodies: Sequence[FixtureBody], toolkit: Toolkit, zero: Point, pose: Pose, part: Any = None
 ) -> bytes:
-    """The bytes of the assembly of a set-up's bodies, with the axes at part zero.
+    """Return the bytes of the assembly of a set-up's bodies, with the axes at part zero.
 
     Parameters
     ----------
@@ -130,17 +130,18 @@ def bodies_step(
         When the extra ``step`` is not installed.
     """
     if part is None:
-        named = named_solids(bodies)
+        named = make_named_solids(bodies)
     else:
-        others = named_solids([body for body in bodies if body.kind is not BodyKind.PART])
+        others = make_named_solids([body for body in bodies if body.kind is not BodyKind.PART])
         named = [(bodies[0].name, part, COLOURS[BodyKind.PART]), *others]
     pitch = min(min(carrier.pitch) for carrier in toolkit.plates)
-    axes = axes_at(zero, pose, pitch)
-    return assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
+    axes = make_axes_at(zero, pose, pitch)
+    return make_assembly(f"{bodies[0].name} set-up", [*named, ("part zero X0 Y0", axes, None)])
 
 
-def named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Colour]]:
-    """The bodies as solids of Open CASCADE, each with its name and colour; a body in pieces as several.
+def make_named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Colour]]:
+    """Return the bodies as solids of Open CASCADE, each with its name and colour; a body in pieces as
+    several.
 
     Raises
     ------
@@ -151,42 +152,42 @@ def named_solids(bodies: Sequence[FixtureBody]) -> list[tuple[str, Any, Colour]]
     return [
         (body.name if number == 0 else f"{body.name} piece {number + 1}", solid, COLOURS[body.kind])
         for body in bodies
-        for number, solid in enumerate(solids_of(body))
+        for number, solid in enumerate(make_solids(body))
     ]
 
 
-def axes_at(point: Point, pose: Pose, length: float) -> Any:
-    """The axes of the part at a point of it, at z = 0: x of the given length, y half as long."""
+def make_axes_at(point: Point, pose: Pose, length: float) -> Any:
+    """Return the axes of the part at a point of it, at z = 0: x of the given length, y half as long."""
     axes, builder = occ.TopoDS_Compound(), occ.BRep_Builder()
     builder.MakeCompound(axes)
     x, y = point
     start, *ends = (pose.apply(*p) for p in ((x, y), (x + length, y), (x, y + length / 2)))
     for end in ends:
-        builder.Add(axes, edge(Line(start, end)))
+        builder.Add(axes, make_edge(Line(start, end)))
     return axes
 
 
-def solids_of(body: FixtureBody) -> list[Any]:
-    """A body as one solid, or as one for each of its pieces."""
+def make_solids(body: FixtureBody) -> list[Any]:
+    """Return a body as one solid, or as one for each of its pieces."""
     first, *others = (
-        extruded(wire(slab.outer), [wire(hole) for hole in slab.holes], slab.low, slab.high)
+        extrude_border(make_wire(slab.outer), [make_wire(hole) for hole in slab.holes], slab.low, slab.high)
         for slab in body.slabs
     )
     for other in others:
         first = occ.BRepAlgoAPI_Fuse(first, other).Shape()
-    return sub_shapes(first, "SOLID")
+    return list_sub_shapes(first, "SOLID")
 
 
-def wire(segments: Iterable[Segment]) -> Any:
-    """A closed wire at z = 0 of segments in running order."""
+def make_wire(segments: Iterable[Segment]) -> Any:
+    """Return a closed wire at z = 0 of segments in running order."""
     maker = occ.BRepBuilderAPI_MakeWire()
     for segment in segments:
-        maker.Add(edge(segment))
+        maker.Add(make_edge(segment))
     return maker.Wire()
 
 
-def edge(segment: Segment) -> Any:
-    """A segment as an edge at z = 0; the circle of an arc run clockwise looks down."""
+def make_edge(segment: Segment) -> Any:
+    """Return a segment as an edge at z = 0; the circle of an arc run clockwise looks down."""
     if isinstance(segment, Line):
         return occ.BRepBuilderAPI_MakeEdge(
             occ.gp_Pnt(*segment.start, 0.0), occ.gp_Pnt(*segment.end, 0.0)
@@ -200,18 +201,18 @@ def edge(segment: Segment) -> Any:
     return occ.BRepBuilderAPI_MakeEdge(occ.gp_Circ(axes, segment.radius), 0.0, 2 * segment.half_sweep).Edge()
 
 
-def extruded(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
-    """The solid between two heights over a border with holes, which run clockwise."""
+def extrude_border(outer: Any, holes: Sequence[Any], low: float, high: float) -> Any:
+    """Return the solid between two heights over a border with holes, which run clockwise."""
     maker = occ.BRepBuilderAPI_MakeFace(
         occ.gp_Pln(occ.gp_Pnt(0.0, 0.0, 0.0), occ.gp_Dir(0.0, 0.0, 1.0)), outer
     )
     for hole in holes:
         maker.Add(hole)
-    face = raised(maker.Face(), low)
+    face = raise_shape(maker.Face(), low)
     return occ.BRepPrimAPI_MakePrism(face, occ.gp_Vec(0.0, 0.0, high - low), True).Shape()
 
 
-def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
+def make_assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> bytes:
     document = occ.TDocStd_Document(occ.TCollection_ExtendedString("XmlOcaf"))
     shapes = occ.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     compound = occ.TopoDS_Compound()
@@ -241,11 +242,11 @@ def assembly(name: str, named: Sequence[tuple[str, Any, Colour | None]]) -> byte
         use.SetId(occ.TCollection_HAsciiString(str(number)))
     stream = BytesIO()
     writer.WriteStream(stream)
-    return coloured(stream.getvalue(), [colour for _, _, colour in named if colour is not None])
+    return add_colours(stream.getvalue(), [colour for _, _, colour in named if colour is not None])
 
 
-def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> bytes:
-    """The bytes of a STEP assembly of jaw plates; the same plates give the same bytes.
+def make_plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> bytes:
+    """Return the bytes of a STEP assembly of jaw plates; the same plates give the same bytes.
 
     Parameters
     ----------
@@ -261,24 +262,24 @@ def plates_step(plates: Sequence[JawPlate], thickness: float | None = None) -> b
         raise InputError(f"thickness {thickness} is not a positive length: give it in mm.")
     load_step_library()
     named = [
-        (f"{plate.title} plate", drilled(plate, right, thickness), COLOURS[BodyKind.PLATE])
+        (f"{plate.title} plate", make_drilled_plate(plate, right, thickness), COLOURS[BodyKind.PLATE])
         for plate, right in zip(plates, place_plates_in_drawing(plates), strict=True)
     ]
-    return assembly("jaw plates", named)
+    return make_assembly("jaw plates", named)
 
 
-def drilled(plate: JawPlate, right: float, thickness: float) -> Any:
+def make_drilled_plate(plate: JawPlate, right: float, thickness: float) -> Any:
     corners = [(x + right, y) for x, y in plate.outline.corners]
-    border = wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
+    border = make_wire([Line(p, q) for p, q in zip(corners, corners[1:] + corners[:1], strict=True)])
     holes: list[tuple[Point, float]] = [(center, plate.hole_diameter) for _, center in plate.holes]
     if plate.bolts is not None:
         holes += [(center, plate.bolts.diameter) for center in plate.bolts.places]
-    wires = [wire([Arc((x + right, y), diameter / 2, 0.0, pi, -1.0)]) for (x, y), diameter in holes]
-    return extruded(border, wires, -thickness, 0.0)
+    wires = [make_wire([Arc((x + right, y), diameter / 2, 0.0, pi, -1.0)]) for (x, y), diameter in holes]
+    return extrude_border(border, wires, -thickness, 0.0)
 
 
-def coloured(text: bytes, colours: Sequence[Colour]) -> bytes:
-    """The text of a STEP file with a colour for each of its bodies, in their order in the file.
+def add_colours(text: bytes, colours: Sequence[Colour]) -> bytes:
+    """Return the text of a STEP file with a colour for each of its bodies, in their order in the file.
 
     Raises RuntimeError when the file has not one body for each colour.
     """

@@ -24,17 +24,17 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
-from workhold.files.svg.selectors import SelectorMatcher, inner_tokens
+from workhold.files.svg.selectors import SelectorMatcher, list_inner_tokens
 
 __all__ = [
     "GEOMETRY",
     "Declared",
     "Document",
     "Styles",
-    "href",
-    "local_name",
+    "read_link",
+    "get_local_name",
     "read_document",
-    "short",
+    "shorten_text",
 ]
 
 SVG_SPACE = "http://www.w3.org/2000/svg"
@@ -48,22 +48,22 @@ START_TAG = re.compile(rb"""<[^<!?](?:[^<>"']++|"[^"<]*+"|'[^'<]*+')*+""")
 ENTITY = re.compile(rb"&(?!(?:amp|lt|gt|quot|apos);)[A-Za-z_:][\w.:-]*;")
 
 
-def local_name(element: Element) -> str:
-    """Tag without its namespace."""
+def get_local_name(element: Element) -> str:
+    """Return the tag without its namespace."""
     return str(element.tag).rpartition("}")[2]
 
 
-def short(text: str, most: int = 60) -> str:
-    """The beginning of what a file says, on one line, for messages."""
+def shorten_text(text: str, most: int = 60) -> str:
+    """Return the beginning of what a file says, on one line, for messages."""
     return " ".join(text[: 10 * most].split())[:most]
 
 
-def shown(name: str) -> str:
-    """The name of an element as messages tell it: without its namespace."""
-    return short(name.rpartition("}")[2])
+def format_element_name(name: str) -> str:
+    """Return the name of an element as messages tell it: without its namespace."""
+    return shorten_text(name.rpartition("}")[2])
 
 
-def href(element: Element) -> str:
+def read_link(element: Element) -> str:
     return element.get("href", element.get(LINK, "")).strip()
 
 
@@ -85,32 +85,32 @@ class Document:
     parents: dict[Element, Element]
 
     def name(self, element: Element) -> str:
-        """How messages call an element: by its id, or else by its number among the elements of its kind."""
-        tag = local_name(element)
+        """Return how messages call an element: by its id, or else by its number among the elements of its kind."""
+        tag = get_local_name(element)
         if element.get("id"):
-            return f"{tag} '{short(element.get('id', ''))}'"
+            return f"{tag} '{shorten_text(element.get('id', ''))}'"
         number, _ = self.places[element]
         return "the root <svg>" if element is self.root else f"{tag} number {number} (without id)"
 
-    def linked(self, link: str) -> Element | None:
-        """The element a link such as ``#id`` points to; None when it is not in the file."""
+    def find_linked(self, link: str) -> Element | None:
+        """Return the element a link such as ``#id`` points to; None when it is not in the file."""
         return self.by_id.get(link[1:], self.by_id.get(unquote(link[1:]))) if link.startswith("#") else None
 
-    def around(self, element: Element) -> list[Element]:
-        """The elements around one, from the root inward."""
+    def list_ancestors(self, element: Element) -> list[Element]:
+        """Return the elements around one, from the root inward."""
         found: list[Element] = []
         while element in self.parents:
             element = self.parents[element]
             found.append(element)
         return found[::-1]
 
-    def drawn(self, element: Element) -> bool:
-        """Whether an element is of SVG's namespace, as the root is, and not of an editor's own."""
+    def is_svg_element(self, element: Element) -> bool:
+        """Return whether an element is of SVG's namespace, as the root is, and not of an editor's own."""
         return str(element.tag).rpartition("}")[0] == str(self.root.tag).rpartition("}")[0]
 
 
 def read_document(content: bytes, budget: Budget) -> Document:
-    """The tree of an SVG file.
+    """Return the tree of an SVG file.
 
     Refuses files that are no SVG, style sheets outside the file, and animations. Refuses XML that is broken
     (with line and column), nested without end, asks for more than ``budget`` has, or declares entities or
@@ -119,23 +119,23 @@ def read_document(content: bytes, budget: Budget) -> Document:
     if content.startswith(b"\x1f\x8b"):
         raise InputError("the SVG file is compressed (svgz): unpack it first.")
     lines: dict[Element, int] = {}
-    root = parsed(content, lines, budget)
+    root = parse_document(content, lines, budget)
     space, _, name = str(root.tag).rpartition("}")
     if name != "svg" or space not in ("", "{" + SVG_SPACE):
-        raise InputError(f"this is XML, but not an SVG drawing (its root is <{short(name)}>).")
+        raise InputError(f"this is XML, but not an SVG drawing (its root is <{shorten_text(name)}>).")
     by_id: dict[str, Element] = {}
     counts: Counter[str] = Counter()
     places: dict[Element, tuple[int, int]] = {}
     for element in root.iter():
-        tag = local_name(element)
+        tag = get_local_name(element)
         counts[tag] += 1
         places[element] = counts[tag], lines[element]
         by_id.setdefault(element.get("id", ""), element)
     by_id.pop("", None)
     document = Document(root, by_id, places, {child: parent for parent in root.iter() for child in parent})
     for element in root.iter():
-        tag = local_name(element)
-        if tag in ANIMATIONS and document.drawn(element):
+        tag = get_local_name(element)
+        if tag in ANIMATIONS and document.is_svg_element(element):
             raise InputError(
                 f"{document.name(element)} moves the drawing while it is shown: remove the animation."
             )
@@ -146,8 +146,8 @@ def read_document(content: bytes, budget: Budget) -> Document:
     return document
 
 
-def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element:
-    """The root element; the line of each element goes into ``lines``.
+def parse_document(content: bytes, lines: dict[Element, int], budget: Budget) -> Element:
+    """Return the root element; the line of each element goes into ``lines``.
 
     Raises InputError for XML that is broken, too deep, too large, or asks for what is not in the file.
     """
@@ -164,14 +164,14 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
         return names[name]
 
     def started(name: str, attributes: dict[str, str]) -> None:
-        budget.enter(lambda: f"<{shown(name)}>")
+        budget.enter(lambda: f"<{format_element_name(name)}>")
         # What ten attributes take is what an element takes.
         budget.spend(1 + len(attributes) // 10)
         line = parser.CurrentLineNumber
         for key, value in attributes.items():
             if len(value) > LONGEST and key in SHORT:
                 raise InputError(
-                    f"<{shown(name)}> on line {line} has {len(value):,} letters in its {key}: correct it."
+                    f"<{format_element_name(name)}> on line {line} has {len(value):,} letters in its {key}: correct it."
                 )
         element = builder.start(expanded(name), {expanded(key): value for key, value in attributes.items()})
         lines[element] = line
@@ -199,7 +199,7 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
     def named(prefix: str | None, space: str | None) -> None:
         if len(space or "") > LONGEST_NAME:
             raise InputError(
-                f"the XML namespace '{short(space or '')}' on line {parser.CurrentLineNumber} is longer than "
+                f"the XML namespace '{shorten_text(space or '')}' on line {parser.CurrentLineNumber} is longer than "
                 f"{LONGEST_NAME} letters: save the file as plain SVG."
             )
 
@@ -209,7 +209,7 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
         unknown = ENTITY.search(content.replace(b"\0", b""))
         if (system or public) and unknown:
             raise InputError(
-                f"the SVG file uses the XML entity {short(unknown.group().decode())}: save it as plain SVG."
+                f"the SVG file uses the XML entity {shorten_text(unknown.group().decode())}: save it as plain SVG."
             )
 
     def instructed(target: str, _: str) -> None:
@@ -242,7 +242,7 @@ def parsed(content: bytes, lines: dict[Element, int], budget: Budget) -> Element
 
 
 def refuse_many_attributes(content: bytes) -> None:
-    """Refuses an element with very many attributes before it is read, which is done at once."""
+    """Refuse an element with very many attributes before it is read, which is done at once."""
     if content.count(b"=") <= MOST_ATTRIBUTES:
         return
     for tag in START_TAG.finditer(content):
@@ -309,7 +309,7 @@ class Styles:
         self.attributes: dict[str, tuple[Block, Block]] = {}
         # Whether gradients and patterns are seen, see ``files.svg.style``.
         self.painted: dict[Element, bool] = {}
-        styles = [element for element in document.root.iter() if local_name(element) == "style"]
+        styles = [element for element in document.root.iter() if get_local_name(element) == "style"]
         styles = [one for one in styles if one.get("type", "").strip().lower() in ("", "text/css")]
         if styles:
             self.match(styles)
@@ -324,7 +324,7 @@ class Styles:
             return
         # Elements that the same rules select share their list.
         shared: dict[tuple[int, ...], list[tuple[tuple[Any, ...], Block]]] = {}
-        for element, selected in sheets.selectors.matched(self.document.root, self.budget):
+        for element, selected in sheets.selectors.match_elements(self.document.root, self.budget):
             key = tuple(number for *_, number in selected)
             if key not in shared:
                 self.budget.spend(len(key))
@@ -335,26 +335,26 @@ class Styles:
                 ]
             self.matched[element] = shared[key]
 
-    def of(self, element: Element) -> dict[str, list[Declared]]:
-        """The declared values of an element's properties, the strongest first."""
+    def list_declared_values(self, element: Element) -> dict[str, list[Declared]]:
+        """Return the declared values of an element's properties, the strongest first."""
         layers: list[tuple[tuple[Any, ...], Block, bool]]
         layers = [((0, -1), [item for item in element.items() if item[0] in ATTRIBUTES], False)]
         layers += [(key, values, True) for key, values in self.matched.get(element, ())]
         if element.get("style"):
-            for important, values in enumerate(self.attribute(element)):
+            for important, values in enumerate(self.parse_style_attribute(element)):
                 layers.append(((important, 1 << 30), values, True))
         found: dict[str, list[Declared]] = defaultdict(list)
-        self.budget.work(sum(1 + len(values) for _, values, _ in layers))
+        self.budget.count_steps(sum(1 + len(values) for _, values, _ in layers))
         for _, values, css in sorted(layers, key=lambda layer: layer[0], reverse=True):
             for name, text in reversed(values):
                 found[name].append(Declared(text.strip(), css))
         return found
 
-    def attribute(self, element: Element) -> tuple[Block, Block]:
+    def parse_style_attribute(self, element: Element) -> tuple[Block, Block]:
         text = element.get("style", "")
         if text not in self.attributes:
             place = f"the style of {self.document.name(element)}"
-            self.attributes[text] = declared(tokens_of(text, place, self.budget), place)
+            self.attributes[text] = parse_declarations(tokenize_css(text, place, self.budget), place)
         return self.attributes[text]
 
 
@@ -373,24 +373,24 @@ class Sheets:
         self.rules: list[tuple[Block, Block]] = []
 
     def read(self, text: str, place: str) -> None:
-        """Adds the rules of a style sheet.
+        """Add the rules of a style sheet.
 
         Raises
         ------
         InputError
             For rules that are not read and could change an outline, and for very many.
         """
-        self.style.count_letters(css_letters(text), place)
-        self.add(tokens_of(text, place, self.budget), place)
+        self.style.count_letters(count_css_letters(text), place)
+        self.add(tokenize_css(text, place, self.budget), place)
 
     def add(self, tokens: list[Any], place: str, counts: bool = True) -> bool:
-        """Adds rules, unless they do not count; returns whether any could change an outline."""
+        """Add rules, unless they do not count; return whether any could change an outline."""
         import cssselect2
         import tinycss2
 
         found = False
         for rule in tinycss2.parse_stylesheet(tokens, skip_comments=True, skip_whitespace=True):
-            self.budget.work(16)
+            self.budget.count_steps(16)
             if rule.type == "at-rule":
                 keyword, condition = rule.lower_at_keyword, tinycss2.serialize(rule.prelude).strip()
                 if keyword == "media" and rule.content is not None:
@@ -402,12 +402,12 @@ class Sheets:
                     keyword == "import" or rule.content is None or self.add(rule.content, place, False)
                 ):
                     raise InputError(
-                        f"{place} has @{short(keyword)} {short(condition)}, which is not read: write plain "
+                        f"{place} has @{shorten_text(keyword)} {shorten_text(condition)}, which is not read: write plain "
                         "rules."
                     )
             elif rule.type == "qualified-rule":
                 words = tinycss2.serialize(rule.prelude).strip()
-                declarations = declared(rule.content, f"{short(words)} in {place}")
+                declarations = parse_declarations(rule.content, f"{shorten_text(words)} in {place}")
                 if not any(declarations):
                     continue
                 found = True
@@ -416,43 +416,43 @@ class Sheets:
                         self.rules += [declarations] * len(self.selectors.add(rule.prelude))
                 except cssselect2.SelectorError as error:
                     raise InputError(
-                        f"{place} has the selector '{short(words)}', which is not read: use classes."
+                        f"{place} has the selector '{shorten_text(words)}', which is not read: use classes."
                     ) from error
         return found
 
 
 def refuse_media(media: str, place: str) -> None:
-    """Refuses styles for some screens or printers only."""
+    """Refuse styles for some screens or printers only."""
     if " ".join(media.lower().split()) not in SCREENS:
         raise InputError(
-            f"{place} is for '{short(media)}' only, which is not read: write the styles without it."
+            f"{place} is for '{shorten_text(media)}' only, which is not read: write the styles without it."
         )
 
 
-def css_letters(text: str) -> int:
-    """The letters of CSS, but for embedded fonts and pictures, which take little time."""
+def count_css_letters(text: str) -> int:
+    """Return the letters of CSS, but for embedded fonts and pictures, which take little time."""
     return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
 
-def tokens_of(text: str, place: str, budget: Budget) -> list[Any]:
-    """The tokens of CSS; refuses what is too long or too deep, and numbers that cannot be read."""
+def tokenize_css(text: str, place: str, budget: Budget) -> list[Any]:
+    """Return the tokens of CSS; refuse what is too long or too deep, and numbers that cannot be read."""
     import tinycss2
 
     style = Budget(LIMITS["style"])
-    style.count_letters(css_letters(text), place)
-    budget.work(1 + len(text) // 16)
+    style.count_letters(count_css_letters(text), place)
+    budget.count_steps(1 + len(text) // 16)
     try:
         tokens: list[Any] = tinycss2.parse_component_value_list(text)
     except ValueError as error:  # whole numbers of thousands of digits
         raise InputError(f"{place} has a number that cannot be read: correct it.") from error
     level = tokens
-    while level := [inner for token in level for inner in inner_tokens(token)]:
+    while level := [inner for token in level for inner in list_inner_tokens(token)]:
         style.enter(lambda: f"a bracket of {place}")
     return tokens
 
 
-def declared(content: Any, place: str) -> tuple[Block, Block]:
-    """The known properties of a block of declarations: plain ones, and important ones.
+def parse_declarations(content: Any, place: str) -> tuple[Block, Block]:
+    """Return the known properties of a block of declarations: plain ones, and important ones.
 
     Refuses rules within the block.
     """

@@ -16,12 +16,19 @@ from __future__ import annotations
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
 from workhold.files.outline.chain import Drawing, Placement
-from workhold.files.outline.diagnostics import unit_asked
+from workhold.files.outline.diagnostics import make_unit_question
 from workhold.files.questions import UNIT
 from workhold.files.svg.document import Styles, read_document
-from workhold.files.svg.viewport import ShapeElement, ViewBox, absolute, fitted, physical, viewbox_of
+from workhold.files.svg.viewport import (
+    ShapeElement,
+    ViewBox,
+    fit_viewbox,
+    is_physical_length,
+    read_absolute_length,
+    read_viewbox,
+)
 from workhold.files.svg.walk import ElementNesting, SvgWalk
-from workhold.units import INCH, drawing_unit, pixels_an_inch
+from workhold.units import INCH, find_drawing_unit, find_pixels_per_inch
 
 __all__ = ["read_svg"]
 
@@ -34,7 +41,7 @@ def read_svg(
     fit: float | None = None,
     budget: Budget | None = None,
 ) -> Drawing:
-    """Reads the visible outlines of an SVG file.
+    """Read the visible outlines of an SVG file.
 
     Parameters
     ----------
@@ -55,13 +62,13 @@ def read_svg(
     budget.elements = 0
     styles = Styles(document, budget)
     name = document.name(document.root)
-    root = ShapeElement(document.root, name, styles.of(document.root), (None, None), budget)
-    box = viewbox_of(document.root.get("viewBox"), root.label, budget)
-    known = page(root, box, unit, usual_unit)
+    root = ShapeElement(document.root, name, styles.list_declared_values(document.root), (None, None), budget)
+    box = read_viewbox(document.root.get("viewBox"), root.label, budget)
+    known = make_page_placement(root, box, unit, usual_unit)
     placement, remarks = known or (Placement(d=-1.0), [])
     walk = SvgWalk(document, styles, fit, budget)
-    sides = [root.given(name) for name in ("width", "height")]
-    width, height = (None if side is None else absolute(side.text) for side in sides)
+    sides = [root.find_given_value(name) for name in ("width", "height")]
+    width, height = (None if side is None else read_absolute_length(side.text) for side in sides)
     viewport = (width, height) if box is None else (box[2], box[3])
     try:
         walk.visit(document.root, ElementNesting(placement, viewport))
@@ -70,16 +77,16 @@ def read_svg(
             raise
         walk.chains = []
     if known is None:
-        pixels = file_scales(root, 1.0, (width, height), box) or (1.0, 1.0)
+        pixels = compute_file_scales(root, 1.0, (width, height), box) or (1.0, 1.0)
         lacking = "the drawing has no physical size (width and height in mm, cm or in)"
-        if in_pixels(root):
+        if is_in_pixels(root):
             lacking += ", but one in pixels"
-        raise unit_asked(lacking, walk.chains, pixels[0], in_pixels(root))
+        raise make_unit_question(lacking, walk.chains, pixels[0], is_in_pixels(root))
     if walk.hidden and not walk.chains:
         raise InputError(
             "no shape of the drawing is seen: each is switched off, transparent, or without fill and stroke."
         )
-    remarks += walk.remarks()
+    remarks += walk.list_remarks()
     return Drawing(tuple(walk.chains), tuple(remarks), walk.curves.found, looks=walk.looks)
 
 
@@ -89,54 +96,57 @@ FEW_DIGITS = 1e-3
 Size = tuple[float | None, float | None]
 
 
-def page(
+def make_page_placement(
     root: ShapeElement, box: ViewBox | None, unit: str | None, usual_unit: str | None
 ) -> tuple[Placement, list[str]] | None:
-    """The map from user units to mm with y up, and a remark when the user's unit overrides the file's size.
+    """Return the map from user units to mm with y up, and a remark when the user's unit overrides the file's
+    size.
 
     None when the size of a user unit is not known.
     """
-    given = [root.given(name) for name in ("width", "height")]
-    sized = any(side is not None and physical(side.text) for side in given)
+    given = [root.find_given_value(name) for name in ("width", "height")]
+    sized = any(side is not None and is_physical_length(side.text) for side in given)
     if not sized:
         unit = usual_unit if unit is None else unit
-    asked = None if unit is None else drawing_unit(unit)
+    asked = None if unit is None else find_drawing_unit(unit)
     an_inch = 96.0  # CSS Values 4, 6.2
-    pixels = None if sized else pixels_an_inch(unit)
-    if pixels is not None and any(side is not None and absolute(side.text) for side in given):
+    pixels = None if sized else find_pixels_per_inch(unit)
+    if pixels is not None and any(side is not None and read_absolute_length(side.text) for side in given):
         # It is the size of the pixel that was asked for, in which the file gives its own.
         an_inch, asked, sized = pixels, None, True
-    lengths = (None if side is None or not sized else absolute(side.text) for side in given)
+    lengths = (None if side is None or not sized else read_absolute_length(side.text) for side in given)
     width, height = (None if side is None else side * INCH.millimetres / an_inch for side in lengths)
-    scales = file_scales(root, INCH.millimetres / an_inch, (width, height), box) if sized else None
+    scales = compute_file_scales(root, INCH.millimetres / an_inch, (width, height), box) if sized else None
     if asked is not None:
-        return uniform(asked.millimetres, box), overriding(root, scales, unit or "", asked.millimetres)
+        return make_uniform_placement(asked.millimetres, box), remark_on_unit(
+            root, scales, unit or "", asked.millimetres
+        )
     if scales is None:
         return None
     left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
     if box is None and height is not None:
         low = height / scales[1]
     placement = Placement(scales[0], 0.0, 0.0, -scales[1], -scales[0] * left, scales[1] * low)
-    if box is None or width is None or height is None or same(width / box[2], height / box[3]):
+    if box is None or width is None or height is None or are_scales_equal(width / box[2], height / box[3]):
         return placement, []
     # Where the page has another shape than the drawing, this is where the drawing lies on it.
-    aspect = fitted(box, width, height, root.element.get("preserveAspectRatio", ""), root.label)
-    return Placement(d=-1.0, f=height).after(aspect), []
+    aspect = fit_viewbox(box, width, height, root.element.get("preserveAspectRatio", ""), root.label)
+    return Placement(d=-1.0, f=height).compose_after(aspect), []
 
 
-def uniform(scale: float, box: ViewBox | None) -> Placement:
-    """The map of a user unit of so many mm, with y up and the lower left corner of the viewBox as origin."""
+def make_uniform_placement(scale: float, box: ViewBox | None) -> Placement:
+    """Return the map of a user unit of so many mm, with y up and the lower left corner of the viewBox as origin."""
     left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
     return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low)
 
 
-def overriding(
+def remark_on_unit(
     root: ShapeElement, scales: tuple[float, float] | None, unit: str, millimetres: float
 ) -> list[str]:
-    """A remark when a unit that was asked for is not what the file says."""
+    """Return a remark when a unit that was asked for is not what the file says."""
     if scales is not None and max(abs(scale - millimetres) for scale in scales) > 1e-9 * millimetres:
         return [f"The file's size makes a user unit {scales[0]:.6g} mm; it was read as 1 {unit} as asked."]
-    if in_pixels(root) and scales is None:
+    if is_in_pixels(root) and scales is None:
         return [
             f"The file's size is in pixels; a user unit was read as 1 {unit} as asked. Where 72, 90 or 96 "
             f"pixels are an inch, give {UNIT} px72, px90 or px96."
@@ -144,20 +154,20 @@ def overriding(
     return []
 
 
-def in_pixels(root: ShapeElement) -> bool:
-    given = (root.given(name) for name in ("width", "height"))
+def is_in_pixels(root: ShapeElement) -> bool:
+    given = (root.find_given_value(name) for name in ("width", "height"))
     return any(side is not None and side.text.lower().endswith("px") for side in given)
 
 
-def same(one: float, other: float) -> bool:
-    """Whether two scales differ by no more than the few digits of the sizes that give them."""
+def are_scales_equal(one: float, other: float) -> bool:
+    """Return whether two scales differ by no more than the few digits of the sizes that give them."""
     return abs(one - other) <= FEW_DIGITS * max(one, other)
 
 
-def file_scales(
+def compute_file_scales(
     root: ShapeElement, pixel: float, size: Size, box: ViewBox | None
 ) -> tuple[float, float] | None:
-    """Millimetres per user unit in x and y by the page's size in mm; None where there is none.
+    """Return the millimetres per user unit in x and y by the page's size in mm; None where there is none.
 
     ``pixel`` is a user unit in mm where there is no viewBox. Refuses a size that is not positive.
     """
@@ -171,7 +181,7 @@ def file_scales(
     scales = [side / whole for side, whole in zip(size, box[2:], strict=True) if side is not None]
     if len(scales) == 2 and abs(scales[0] - scales[1]) > 1e-9 * max(scales):
         aspect = root.element.get("preserveAspectRatio", "xMidYMid meet").strip()
-        if aspect.startswith("none") and not same(scales[0], scales[1]):
+        if aspect.startswith("none") and not are_scales_equal(scales[0], scales[1]):
             return scales[0], scales[1]
         return (max(scales) if aspect.endswith("slice") else min(scales),) * 2
     return scales[0], scales[0]

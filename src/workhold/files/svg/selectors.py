@@ -21,7 +21,7 @@ from attrs import define
 
 from workhold.files.budget import Budget
 
-__all__ = ["SelectorMatcher", "inner_tokens"]
+__all__ = ["SelectorMatcher", "list_inner_tokens"]
 
 CHILD, NEXT, LATER, WITHIN = ">", "+", "~", " "
 LOGICAL = ("is", "where", "not", "has")
@@ -30,8 +30,8 @@ MOST_PARTS = 200
 Tokens = Sequence[Any]
 
 
-def inner_tokens(token: Any) -> Tokens:
-    """The tokens of tinycss2 in a block or a function; nothing in others."""
+def list_inner_tokens(token: Any) -> Tokens:
+    """Return the tokens of tinycss2 in a block or a function; nothing in others."""
     if token.type == "function":
         return list(token.arguments)
     return list(token.content) if token.type.endswith(" block") else []
@@ -81,7 +81,7 @@ class SelectorMatcher:
         self.count = 0
 
     def add(self, prelude: Tokens) -> list[int]:
-        """Adds a list of selectors; returns a number for each, but for those of pseudo-elements.
+        """Add a list of selectors; return a number for each, but for those of pseudo-elements.
 
         Raises
         ------
@@ -90,17 +90,17 @@ class SelectorMatcher:
         InputError
             For very many.
         """
-        return [number for tokens in split_at_commas(prelude) for number in self.added(tokens)]
+        return [number for tokens in split_at_commas(prelude) for number in self.add_selector(tokens)]
 
-    def added(self, tokens: Tokens) -> list[int]:
-        """Adds one selector; returns its number, or none for that of a pseudo-element."""
+    def add_selector(self, tokens: Tokens) -> list[int]:
+        """Add one selector; return its number, or none for that of a pseudo-element."""
         import cssselect2
 
-        chain = compound_selectors(tokens)
+        chain = split_compound_selectors(tokens)
         compiled = []
         for _, compound in chain:
             refuse_slow(compound)
-            self.sheets.spend(1 + part_count(compound) // 10)
+            self.sheets.spend(1 + count_tokens(compound) // 10)
             try:
                 compiled += cssselect2.compile_selector_list(compound)
             except cssselect2.SelectorError:
@@ -127,8 +127,10 @@ class SelectorMatcher:
         self.count += 1
         return [self.count - 1]
 
-    def matched(self, root: Element, budget: Budget) -> Iterator[tuple[Element, list[tuple[Any, ...]]]]:
-        """The elements of a tree, each with specificity and number of the selectors that select it."""
+    def match_elements(
+        self, root: Element, budget: Budget
+    ) -> Iterator[tuple[Element, list[tuple[Any, ...]]]]:
+        """Yield the elements of a tree, each with specificity and number of the selectors that select it."""
         import cssselect2
 
         after, open_elements = self.after, [OpenElement(None)]
@@ -137,7 +139,7 @@ class SelectorMatcher:
             while open_elements[-1].element is not parent:
                 open_elements.pop()
             around = open_elements[-1]
-            fulfilled = self.fulfilled(wrapper, budget)
+            fulfilled = self.find_fulfilled(wrapper, budget)
             possible = (
                 after[""]
                 | after[WITHIN] & around.around << 1
@@ -152,20 +154,20 @@ class SelectorMatcher:
             selected = [self.selectors[compound] for compound in found if compound in self.selectors]
             yield wrapper.etree_element, sorted((*weights, number) for number, weights in selected)
 
-    def fulfilled(self, wrapper: Any, budget: Budget) -> list[int]:
-        """The compound selectors that an element fulfils by itself."""
-        budget.work(1 + self.compounds // 32)
+    def find_fulfilled(self, wrapper: Any, budget: Budget) -> list[int]:
+        """Return the compound selectors that an element fulfils by itself."""
+        budget.count_steps(1 + self.compounds // 32)
         found = [compound for *_, compound in self.simple.match(wrapper)]
         for matcher, descends in self.asked:
             # Some look at all the children around, or at all that is inside.
             below = sum(1 for _ in wrapper.etree_element.iter()) if descends else 0
-            budget.work(1 + len(wrapper.etree_siblings) + below)
+            budget.count_steps(1 + len(wrapper.etree_siblings) + below)
             found += [compound for *_, compound in matcher.match(wrapper)]
         return found
 
 
 def split_at_commas(tokens: Tokens) -> list[list[Any]]:
-    """The selectors of a list, without comments."""
+    """Return the selectors of a list, without comments."""
     parts: list[list[Any]] = [[]]
     for token in tokens:
         if token == ",":
@@ -175,8 +177,8 @@ def split_at_commas(tokens: Tokens) -> list[list[Any]]:
     return parts
 
 
-def compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
-    """The compound selectors of one selector, each with what combines it with the one before.
+def split_compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
+    """Return the compound selectors of one selector, each with what combines it with the one before.
 
     Raises cssselect2.SelectorError for combinators with nothing before or after them.
     """
@@ -184,7 +186,7 @@ def compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
 
     chain: list[tuple[str, list[Any]]] = []
     combinator = ""
-    for token in trimmed(tokens):
+    for token in trim_blanks(tokens):
         if token.type == "whitespace":
             combinator = combinator or WITHIN
         elif token in (CHILD, NEXT, LATER):
@@ -201,7 +203,7 @@ def compound_selectors(tokens: Tokens) -> list[tuple[str, list[Any]]]:
     return chain
 
 
-def trimmed(tokens: Tokens) -> list[Any]:
+def trim_blanks(tokens: Tokens) -> list[Any]:
     blank = [token.type == "whitespace" for token in tokens]
     if all(blank):
         return []
@@ -209,7 +211,7 @@ def trimmed(tokens: Tokens) -> list[Any]:
 
 
 def refuse_slow(compound: Tokens, relational: bool = False) -> None:
-    """Refuses what cssselect2 would try in very many ways, or in a recursion as deep as the drawing is wide.
+    """Refuse what cssselect2 would try in very many ways, or in a recursion as deep as the drawing is wide.
 
     Raises cssselect2.SelectorError for many parts, combinators within a part, ``:has`` in ``:has``, and the
     "of" of ``:nth-child``.
@@ -217,7 +219,7 @@ def refuse_slow(compound: Tokens, relational: bool = False) -> None:
     import cssselect2
 
     error = cssselect2.SelectorError(None, "too much to ask of every element")
-    if part_count(compound) > MOST_PARTS:
+    if count_tokens(compound) > MOST_PARTS:
         raise error
     for token in compound:
         if token.type != "function":
@@ -227,22 +229,22 @@ def refuse_slow(compound: Tokens, relational: bool = False) -> None:
                 raise error
             continue
         has = token.lower_name == "has"
-        for tokens in map(trimmed, split_at_commas(token.arguments)):
+        for tokens in map(trim_blanks, split_at_commas(token.arguments)):
             if has and tokens and tokens[0] in (CHILD, NEXT, LATER):
-                tokens = trimmed(tokens[1:])
-            if tokens and (len(compound_selectors(tokens)) > 1 or (has and relational)):
+                tokens = trim_blanks(tokens[1:])
+            if tokens and (len(split_compound_selectors(tokens)) > 1 or (has and relational)):
                 raise error
             refuse_slow(tokens, relational or has)
 
 
-def part_count(tokens: Tokens) -> int:
-    """How many tokens there are, those in blocks and functions too."""
-    return sum(1 + part_count(inner_tokens(token)) for token in tokens)
+def count_tokens(tokens: Tokens) -> int:
+    """Return how many tokens there are, those in blocks and functions too."""
+    return sum(1 + count_tokens(list_inner_tokens(token)) for token in tokens)
 
 
 def has_descendants(tokens: Tokens) -> bool:
-    """Whether a compound selector asks what is in an element."""
+    """Return whether a compound selector asks what is in an element."""
     return any(
-        (token.type == "function" and token.lower_name == "has") or has_descendants(inner_tokens(token))
+        (token.type == "function" and token.lower_name == "has") or has_descendants(list_inner_tokens(token))
         for token in tokens
     )

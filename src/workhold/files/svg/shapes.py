@@ -20,9 +20,9 @@ from attrs import field, frozen
 
 from workhold.conventions import CIRCULAR, HALF_CIRCLE
 from workhold.errors import InputError
-from workhold.files.outline.chain import arc_bulges
-from workhold.files.svg.document import short
-from workhold.files.svg.viewport import LARGEST, NUMBER, ShapeElement, numbers
+from workhold.files.outline.chain import list_arc_bulges
+from workhold.files.svg.document import shorten_text
+from workhold.files.svg.viewport import LARGEST, NUMBER, ShapeElement, read_numbers
 from workhold.geometry.rational import Pieces, make_bezier_piece, split_ellipse
 from workhold.geometry.segment import Point
 
@@ -45,9 +45,9 @@ class Shape:
     labels: tuple[str, ...]
     curved: Mapping[int, Pieces] = field(factory=dict)
 
-    def closed(self) -> Shape:
-        """The shape with a line from its end to its start, unless it ends there."""
-        if near(self.points[0], self.points[-1]):
+    def close(self) -> Shape:
+        """Return the shape with a line from its end to its start, unless it ends there."""
+        if are_equal_points(self.points[0], self.points[-1]):
             return self
         label = (
             f"{self.labels[0].rpartition(' segment ')[0] or self.labels[0]} segment {len(self.labels) + 1}"
@@ -55,47 +55,47 @@ class Shape:
         return Shape((*self.points, self.points[0]), (*self.bulges, 0.0), (*self.labels, label), self.curved)
 
 
-def near(p: Point, q: Point) -> bool:
-    """Whether two points are equal but for rounding."""
+def are_equal_points(p: Point, q: Point) -> bool:
+    """Return whether two points are equal but for rounding."""
     return hypot(p[0] - q[0], p[1] - q[1]) <= 1e-12 * (1 + abs(p[0]) + abs(p[1]))
 
 
-def path(figure: ShapeElement) -> Iterator[Shape]:
-    """A <path>; each subpath is a chain."""
+def read_path(figure: ShapeElement) -> Iterator[Shape]:
+    """Yield a <path>; each subpath is a chain."""
     label = figure.label
     start: Point = (0.0, 0.0)
     steps: list[PathStep] = []
-    for number, segment in enumerate(path_segments(figure)):
+    for number, segment in enumerate(list_path_segments(figure)):
         kind = type(segment).__name__
         if kind == "Move":
             if steps:
-                yield subpath(start, steps)
-            start, steps = xy(segment.end, label), []
+                yield make_subpath(start, steps)
+            start, steps = read_point(segment.end, label), []
             continue
         last = steps[-1].end if steps else start
-        found = steps_of(segment, kind, f"{label} segment {number}")
+        found = convert_path_command(segment, kind, f"{label} segment {number}")
         # Closing a path that is back at its start adds nothing.
-        steps += [step for step in found if not (kind == "Close" and near(step.end, last))]
+        steps += [step for step in found if not (kind == "Close" and are_equal_points(step.end, last))]
         if kind == "Close" and steps:
-            yield subpath(start, steps)
+            yield make_subpath(start, steps)
             start, steps = steps[-1].end, []
     if steps:
-        yield subpath(start, steps)
+        yield make_subpath(start, steps)
 
 
 # Commands that are resolved at a time.
 BATCH = 256
 
 
-def path_segments(figure: ShapeElement) -> Iterator[Any]:
-    """The segments of a path as svgelements resolves them.
+def list_path_segments(figure: ShapeElement) -> Iterator[Any]:
+    """Yield the segments of a path as svgelements resolves them.
 
     Refuses path data that cannot be read, or asks for more than the budget has.
     """
     from svgelements import Move, Path
 
-    data = path_data(figure).rstrip()
-    commands = plain_commands(data)
+    data = read_path_data(figure).rstrip()
+    commands = split_path_commands(data)
     held: list[Any] = []
     while True:
         # What follows depends on the last segment, and closing on where the subpath begins.
@@ -108,7 +108,7 @@ def path_segments(figure: ShapeElement) -> Iterator[Any]:
             held = list(resolved)
         except Exception as error:  # svgelements raises many kinds for wrong path data
             raise InputError(
-                f"{figure.label} has path data that cannot be read ('{short(data)}'): correct it."
+                f"{figure.label} has path data that cannot be read ('{shorten_text(data)}'): correct it."
             ) from error
         figure.budget.spend(len(batch))
         yield from held[len(seeds) :]
@@ -125,30 +125,31 @@ class PathStep(NamedTuple):
     curve: Pieces | None = None
 
 
-def subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
+def make_subpath(start: Point, steps: Sequence[PathStep]) -> Shape:
     ends, bulges, labels, curves = zip(*steps, strict=True)
     return Shape((start, *ends), bulges, labels, {k: c for k, c in enumerate(curves) if c is not None})
 
 
-def path_data(figure: ShapeElement) -> str:
-    """The path data, as attribute or as CSS property; empty when there is none.
+def read_path_data(figure: ShapeElement) -> str:
+    """Return the path data, as attribute or as CSS property; empty when there is none.
 
     Refuses a property that is not ``path("...")``.
     """
-    given = figure.given("d")
+    given = figure.find_given_value("d")
     if given is None or given.text in ("", "none"):
         return ""
     match = CSS_PATH.match(given.text) if given.css else None
     if given.css and match is None:
         raise InputError(
-            f"{figure.label} has the d '{short(given.text)}' in its style, which is not read: make it an "
+            f"{figure.label} has the d '{shorten_text(given.text)}' in its style, which is not read: make it an "
             "attribute."
         )
     return given.text if match is None else match.group(1) or match.group(2) or ""
 
 
-def plain_commands(data: str) -> Iterator[str]:
-    """Commands of path data, with letter and arguments (SVG 2, 9.3.9); arcs without radius are lines (9.5.1).
+def split_path_commands(data: str) -> Iterator[str]:
+    """Yield the commands of path data, with letter and arguments (SVG 2, 9.3.9); arcs without radius are
+    lines (9.5.1).
 
     Raises ValueError for path data that is not of SVG's grammar.
     """
@@ -175,18 +176,19 @@ def plain_commands(data: str) -> Iterator[str]:
             again = count > 0 and ARGUMENT.match(data, position) is not None
 
 
-def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
-    """What one path command draws: the arc of a circle as one or two arcs, and anything else as one segment.
+def convert_path_command(segment: Any, kind: str, label: str) -> list[PathStep]:
+    """Return what one path command draws: the arc of a circle as one or two arcs, and anything else as one
+    segment.
 
     Raises InputError for numbers that are missing or not finite.
     """
-    end = xy(segment.end, label)
+    end = read_point(segment.end, label)
     if kind in ("Line", "Close"):
         return [PathStep(end, 0.0, label)]
-    start = xy(segment.start, label)
+    start = read_point(segment.start, label)
     if kind != "Arc":
         between = [segment.control] if kind == "QuadraticBezier" else [segment.control1, segment.control2]
-        curve = make_bezier_piece([start, *(xy(point, label) for point in between), end])
+        curve = make_bezier_piece([start, *(read_point(point, label) for point in between), end])
         return [PathStep(end, 0.0, label, curve)]
     if end == start:
         return []  # SVG 2, 9.5.1
@@ -194,24 +196,26 @@ def steps_of(segment: Any, kind: str, label: str) -> list[PathStep]:
     if not max(radius, other) <= LARGEST:
         raise InputError(f"{label} is an arc with a radius that is too large: correct it.")
     if abs(radius - other) > CIRCULAR * max(radius, other):
-        cx, cy = xy(segment.center, label)
-        major, minor = ((x - cx, y - cy) for x, y in (xy(segment.prx, label), xy(segment.pry, label)))
+        cx, cy = read_point(segment.center, label)
+        major, minor = (
+            (x - cx, y - cy) for x, y in (read_point(segment.prx, label), read_point(segment.pry, label))
+        )
         curve = split_ellipse((cx, cy), major, minor, float(segment.get_start_t()), float(segment.sweep))
         curve[0, 0], curve[-1, -1] = (*start, 1.0), (*end, 1.0)
         return [PathStep(end, 0.0, label, curve)]
-    sweep = arc_sweep(start, end, radius, float(segment.sweep))
-    bulges = arc_bulges(sweep)
+    sweep = compute_arc_sweep(start, end, radius, float(segment.sweep))
+    bulges = list_arc_bulges(sweep)
     if len(bulges) == 1:
         return [PathStep(end, bulges[0], label)]
-    cx, cy = xy(segment.center, label)
+    cx, cy = read_point(segment.center, label)
     c, s = cos(sweep / 2), sin(sweep / 2)
     dx, dy = start[0] - cx, start[1] - cy
     middle = (cx + c * dx - s * dy, cy + s * dx + c * dy)
     return [PathStep(middle, bulges[0], label), PathStep(end, bulges[1], label)]
 
 
-def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
-    """Sweep of an arc by chord and radius, more accurate than the rough one, which gives sign and half."""
+def compute_arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
+    """Return the sweep of an arc by chord and radius, more accurate than the rough one, which gives sign and half."""
     half_chord = hypot(end[0] - start[0], end[1] - start[1]) / 2
     ratio = half_chord / radius if radius > 0 else 1.0
     half = pi / 2 if ratio > 1 - HALF_CIRCLE else asin(ratio)
@@ -222,31 +226,31 @@ def arc_sweep(start: Point, end: Point, radius: float, rough: float) -> float:
     return sweep if rough > 0 else -sweep
 
 
-def xy(point: Any, label: str) -> Point:
-    """A point of svgelements; raises InputError when it is missing, not finite or too large."""
+def read_point(point: Any, label: str) -> Point:
+    """Return a point of svgelements; raise InputError when it is missing, not finite or too large."""
     if point is None or not (abs(point.x) <= LARGEST and abs(point.y) <= LARGEST):
         raise InputError(f"{label} has path data with a number missing, too large or not finite: correct it.")
     return float(point.x), float(point.y)
 
 
-def line(figure: ShapeElement) -> Iterator[Shape]:
-    x1, y1, x2, y2 = (figure.length(a) for a in ("x1", "y1", "x2", "y2"))
+def read_line(figure: ShapeElement) -> Iterator[Shape]:
+    x1, y1, x2, y2 = (figure.read_length(a) for a in ("x1", "y1", "x2", "y2"))
     yield Shape(((x1, y1), (x2, y2)), (0.0,), (figure.label,))
 
 
-def circle(figure: ShapeElement) -> Iterator[Shape]:
-    x, y, r = (figure.length(a) for a in ("cx", "cy", "r"))
-    return oval(figure.label, (x, y), r, r)
+def read_circle(figure: ShapeElement) -> Iterator[Shape]:
+    x, y, r = (figure.read_length(a) for a in ("cx", "cy", "r"))
+    return make_oval(figure.label, (x, y), r, r)
 
 
-def ellipse(figure: ShapeElement) -> Iterator[Shape]:
-    """An <ellipse>; a radius that is not given is the other (SVG 2, 10.4)."""
-    x, y = (figure.length(a) for a in ("cx", "cy"))
-    return oval(figure.label, (x, y), *radii(figure))
+def read_ellipse(figure: ShapeElement) -> Iterator[Shape]:
+    """Yield an <ellipse>; a radius that is not given is the other (SVG 2, 10.4)."""
+    x, y = (figure.read_length(a) for a in ("cx", "cy"))
+    return make_oval(figure.label, (x, y), *read_radii(figure))
 
 
-def oval(label: str, center: Point, rx: float, ry: float) -> Iterator[Shape]:
-    """An ellipse, or a circle as two halves where the radii are equal; nothing where one of them is 0."""
+def make_oval(label: str, center: Point, rx: float, ry: float) -> Iterator[Shape]:
+    """Yield an ellipse, or a circle as two halves where the radii are equal; nothing where one of them is 0."""
     x, y = center
     if not (rx > 0 and ry > 0):
         return
@@ -257,22 +261,22 @@ def oval(label: str, center: Point, rx: float, ry: float) -> Iterator[Shape]:
         yield Shape(((x + rx, y), (x - rx, y), (x + rx, y)), (1.0, 1.0), (label, label))
 
 
-def radii(figure: ShapeElement) -> tuple[float, float]:
-    """``rx`` and ``ry``: one that is not given, or negative, is the other, and 0 when neither is."""
-    rx, ry = (figure.length(a, default=-1.0) for a in ("rx", "ry"))
+def read_radii(figure: ShapeElement) -> tuple[float, float]:
+    """Return ``rx`` and ``ry``: one that is not given, or negative, is the other, and 0 when neither is."""
+    rx, ry = (figure.read_length(a, default=-1.0) for a in ("rx", "ry"))
     return max(ry if rx < 0 else rx, 0.0), max(rx if ry < 0 else ry, 0.0)
 
 
-def rect(figure: ShapeElement) -> Iterator[Shape]:
-    """A <rect>, its corners sharp, round or elliptical (SVG 1.1, section 9.2)."""
-    x, y, w, h = (figure.length(a) for a in ("x", "y", "width", "height"))
+def read_rectangle(figure: ShapeElement) -> Iterator[Shape]:
+    """Yield a <rect>, its corners sharp, round or elliptical (SVG 1.1, section 9.2)."""
+    x, y, w, h = (figure.read_length(a) for a in ("x", "y", "width", "height"))
     if not (w > 0 and h > 0):
         return
-    rx, ry = radii(figure)
+    rx, ry = read_radii(figure)
     rx, ry = min(rx, w / 2), min(ry, h / 2)
     if rx == 0 or ry == 0:
         corners = ((x, y), (x + w, y), (x + w, y + h), (x, y + h), (x, y))
-        yield Shape(corners, (0.0,) * 4, segment_labels(figure.label, 4))
+        yield Shape(corners, (0.0,) * 4, list_segment_labels(figure.label, 4))
         return
     quarter = tan(pi / 8)
     stations = [
@@ -289,7 +293,7 @@ def rect(figure: ShapeElement) -> Iterator[Shape]:
     kept = [
         s
         for s, after in zip(stations, stations[1:] + stations[:1], strict=True)
-        if s[1] or not near(s[0], after[0])
+        if s[1] or not are_equal_points(s[0], after[0])
     ]
     points = (*(point for point, _ in kept), kept[0][0])
     curved: dict[int, Pieces] = {}
@@ -301,12 +305,14 @@ def rect(figure: ShapeElement) -> Iterator[Shape]:
                 corner, weight = ((px, qy) if len(curved) % 2 else (qx, py)), cos(pi / 4)
                 rows = [(px, py, 1.0), (corner[0] * weight, corner[1] * weight, weight), (qx, qy, 1.0)]
                 curved[k] = np.array([rows])
-    yield Shape(points, tuple(bulge for _, bulge in kept), segment_labels(figure.label, len(kept)), curved)
+    yield Shape(
+        points, tuple(bulge for _, bulge in kept), list_segment_labels(figure.label, len(kept)), curved
+    )
 
 
-def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
-    """A <polyline> or <polygon>; raises InputError for an odd number of coordinates."""
-    values = numbers(figure.element.get("points", ""), f"{figure.label}: points", figure.budget)
+def read_polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
+    """Yield a <polyline> or <polygon>; raise InputError for an odd number of coordinates."""
+    values = read_numbers(figure.element.get("points", ""), f"{figure.label}: points", figure.budget)
     if len(values) % 2:
         raise InputError(f"{figure.label} has an odd number of coordinates: correct its points.")
     points = list(zip(values[::2], values[1::2], strict=True))
@@ -314,23 +320,23 @@ def polyline(figure: ShapeElement, close: bool = False) -> Iterator[Shape]:
         points.append(points[0])
     if len(points) > 1:
         count = len(points) - 1
-        yield Shape(tuple(points), (0.0,) * count, segment_labels(figure.label, count))
+        yield Shape(tuple(points), (0.0,) * count, list_segment_labels(figure.label, count))
 
 
-def polygon(figure: ShapeElement) -> Iterator[Shape]:
-    return polyline(figure, close=True)
+def read_polygon(figure: ShapeElement) -> Iterator[Shape]:
+    return read_polyline(figure, close=True)
 
 
-def segment_labels(label: str, count: int) -> tuple[str, ...]:
+def list_segment_labels(label: str, count: int) -> tuple[str, ...]:
     return tuple(f"{label} segment {k}" for k in range(count))
 
 
 SHAPES: dict[str, Callable[[ShapeElement], Iterator[Shape]]] = {
-    "line": line,
-    "circle": circle,
-    "ellipse": ellipse,
-    "rect": rect,
-    "polyline": polyline,
-    "polygon": polygon,
-    "path": path,
+    "line": read_line,
+    "circle": read_circle,
+    "ellipse": read_ellipse,
+    "rect": read_rectangle,
+    "polyline": read_polyline,
+    "polygon": read_polygon,
+    "path": read_path,
 }

@@ -18,14 +18,14 @@ from attrs import frozen
 
 from workhold.errors import InputError
 from workhold.files.budget import Budget
-from workhold.files.outline.chain import Chain, cleaned
-from workhold.files.outline.joining import closed_loop
-from workhold.files.svg.document import Declared, Styles, href, local_name, short
+from workhold.files.outline.chain import Chain, drop_zero_lengths
+from workhold.files.outline.joining import make_closed_loop
+from workhold.files.svg.document import Declared, Styles, get_local_name, read_link, shorten_text
 from workhold.files.svg.viewport import LENGTH, ShapeElement
 from workhold.geometry.loop import LoopShape, compute_signed_area, loop_segments, refuse_meeting_loops
 from workhold.kernels.base.distance import turns_around
 
-__all__ = ["INITIAL", "Style", "boundaries", "computed", "link_of", "refuse_effects"]
+__all__ = ["INITIAL", "Style", "keep_painted_boundaries", "compute_style", "link_of", "refuse_effects"]
 
 Value = TypeVar("Value")
 Declarations = dict[str, list[Declared]]
@@ -100,14 +100,14 @@ class Style:
 INITIAL = Style()
 
 
-def computed(declarations: Declarations, around: Style, styles: Styles, label: str) -> Style:
-    """The style of an element in one with the style ``around``.
+def compute_style(declarations: Declarations, around: Style, styles: Styles, label: str) -> Style:
+    """Return the style of an element in one with the style ``around``.
 
     Refuses values that are not read and decide whether the element is seen.
     """
 
     def value(name: str, parse: Callable[[str], Value | None], inherited: Value, initial: Value) -> Value:
-        """The first valid declared value, or else the inherited one."""
+        """Return the first valid declared value, or else the inherited one."""
         for given in declarations.get(name, ()):
             text = given.text.lower() if "url(" not in given.text.lower() else given.text
             if text in ("inherit", "unset", "revert") or (name == "color" and text == CURRENT):
@@ -119,68 +119,68 @@ def computed(declarations: Declarations, around: Style, styles: Styles, label: s
                 return parsed
             if "(" in text or text == "revert-layer":
                 raise InputError(
-                    f"{label} has {name}: {short(text)}, which is not read: write a plain value."
+                    f"{label} has {name}: {shorten_text(text)}, which is not read: write a plain value."
                 )
         return inherited
 
     def painted(text: str) -> str | None:
-        return paint(text, styles)
+        return resolve_paint(text, styles)
 
     display = value("display", lambda text: text if DISPLAYS.match(text) else None, "inline", "inline")
     if display == "contents":
         raise InputError(f"{label} has display: contents, which is not read: remove it.")
     return Style(
-        displayed=display != "none" and value("opacity", positive, True, True),
+        displayed=display != "none" and value("opacity", is_positive_opacity, True, True),
         shown=value(
             "visibility", {"visible": True, "hidden": False, "collapse": False}.get, around.shown, True
         ),
         fill=value("fill", painted, around.fill, INITIAL.fill),
         stroke=value("stroke", painted, around.stroke, INITIAL.stroke),
-        fill_opaque=value("fill-opacity", positive, around.fill_opaque, True),
-        stroke_opaque=value("stroke-opacity", positive, around.stroke_opaque, True),
-        stroke_wide=value("stroke-width", width, around.stroke_wide, True),
-        stroke_drawn=value("stroke-dasharray", dashed, around.stroke_drawn, True),
-        color_opaque=value("color", opaque, around.color_opaque, True),
+        fill_opaque=value("fill-opacity", is_positive_opacity, around.fill_opaque, True),
+        stroke_opaque=value("stroke-opacity", is_positive_opacity, around.stroke_opaque, True),
+        stroke_wide=value("stroke-width", is_positive_width, around.stroke_wide, True),
+        stroke_drawn=value("stroke-dasharray", is_dash_pattern, around.stroke_drawn, True),
+        color_opaque=value("color", is_opaque, around.color_opaque, True),
         even_odd=value("fill-rule", {"evenodd": True, "nonzero": False}.get, around.even_odd, False),
         markers=any(value(name, lambda text: text != "none", around.markers, False) for name in MARKERS),
     )
 
 
 def refuse_effects(figure: ShapeElement) -> None:
-    """Refuses masks, filters and other effects that cut, move or hide what is drawn."""
+    """Refuse masks, filters and other effects that cut, move or hide what is drawn."""
     for name, harmless in EFFECTS.items():
         text = figure.declarations[name][0].text if name in figure.declarations else harmless
         usual = () if name == "all" else ("normal", "initial", "unset", "inherit")
         if text.lower() not in (harmless, *usual):
             raise InputError(
-                f"{figure.label} has the {name} '{short(text)}', which is not read: remove it, or draw its "
+                f"{figure.label} has the {name} '{shorten_text(text)}', which is not read: remove it, or draw its "
                 "effect."
             )
 
 
-def positive(text: str) -> bool | None:
-    """Whether an opacity is above 0; None when it is none."""
+def is_positive_opacity(text: str) -> bool | None:
+    """Return whether an opacity is above 0; None when it is none."""
     match = LENGTH.match(text)
     return None if match is None or match.group(2) not in ("", "%") else float(match.group(1)) > 0
 
 
-def width(text: str) -> bool | None:
-    """Whether a stroke's width is above 0; None when it is none."""
+def is_positive_width(text: str) -> bool | None:
+    """Return whether a stroke's width is above 0; None when it is none."""
     match = LENGTH.match(text)
     return None if match is None or float(match.group(1)) < 0 else float(match.group(1)) > 0
 
 
-def dashed(text: str) -> bool | None:
-    """Whether a pattern of dashes and gaps has a dash; None when it is no pattern."""
+def is_dash_pattern(text: str) -> bool | None:
+    """Return whether a pattern of dashes and gaps has a dash; None when it is no pattern."""
     words = text.replace(",", " ").split()
     if text == "none" or len(words) % 2:
         words *= 2
-    sizes = [text == "none" or width(word) for word in words]
+    sizes = [text == "none" or is_positive_width(word) for word in words]
     return None if not sizes or None in sizes else any(sizes[::2])
 
 
-def opaque(text: str) -> bool | None:
-    """Whether a colour is not fully transparent; None when it is none."""
+def is_opaque(text: str) -> bool | None:
+    """Return whether a colour is not fully transparent; None when it is none."""
     text = PROFILE.sub("", text)
     if HEX.match(text):
         return len(text) in (4, 7) or int(text[1:], 16) % (16 if len(text) == 5 else 256) > 0
@@ -194,60 +194,65 @@ def opaque(text: str) -> bool | None:
 
 
 def link_of(text: str) -> tuple[str, str] | None:
-    """What ``url(...)`` points to, and what follows it; None when the text is no url."""
+    """Return what ``url(...)`` points to, and what follows it; None when the text is no url."""
     match = URL.match(text)
     if match is None:
         return None
     return next(part for part in match.groups()[:3] if part is not None), match.group(4)
 
 
-def paint(text: str, styles: Styles) -> str | None:
-    """What a paint shows; None when it is none (SVG 2, 13.2)."""
+def resolve_paint(text: str, styles: Styles) -> str | None:
+    """Return what a paint shows; None when it is none (SVG 2, 13.2)."""
     if text in (NONE, CURRENT):
         return text
     if text in ("context-fill", "context-stroke"):
         return NONE
     link = link_of(text)
     if link is None:
-        seen = opaque(text)
+        seen = is_opaque(text)
         return None if seen is None else SEEN if seen else NONE
-    server = styles.document.linked(link[0])
-    if server is not None and local_name(server) in PAINT_SERVERS:
-        return SEEN if paints(server, styles) else NONE
-    return paint(link[1].lower() or NONE, styles)
+    server = styles.document.find_linked(link[0])
+    if server is not None and get_local_name(server) in PAINT_SERVERS:
+        return SEEN if shows_paint(server, styles) else NONE
+    return resolve_paint(link[1].lower() or NONE, styles)
 
 
-def paints(server: Element, styles: Styles, deepest: int = 50) -> bool:
-    """Whether a gradient has a visible stop, or a pattern has content, itself or by what it links to."""
+def shows_paint(server: Element, styles: Styles, deepest: int = 50) -> bool:
+    """Return whether a gradient has a visible stop, or a pattern has content, itself or by what it links to."""
     if server not in styles.painted:
         content = [
-            child for child in server if (local_name(child) == "stop") == (local_name(server) != "pattern")
+            child
+            for child in server
+            if (get_local_name(child) == "stop") == (get_local_name(server) != "pattern")
         ]
-        linked = styles.document.linked(href(server))
+        linked = styles.document.find_linked(read_link(server))
         styles.painted[server] = (
             any(
-                local_name(child) != "stop"
-                or all(positive(d.text) is not False for d in styles.of(child)["stop-opacity"][:1])
+                get_local_name(child) != "stop"
+                or all(
+                    is_positive_opacity(d.text) is not False
+                    for d in styles.list_declared_values(child)["stop-opacity"][:1]
+                )
                 for child in content
             )
             if content
-            else linked is not None and deepest > 0 and paints(linked, styles, deepest - 1)
+            else linked is not None and deepest > 0 and shows_paint(linked, styles, deepest - 1)
         )
     return styles.painted[server]
 
 
-def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
-    """The chains that have paint on one side only, by the nonzero rule.
+def keep_painted_boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
+    """Return the chains that have paint on one side only, by the nonzero rule.
 
     How often the loops around a point turn about it, less those that turn the other way, is not zero where
     there is paint. A loop that meets others stays, to be refused with its place.
     """
-    clean = [cleaned([chain]).chains for chain in chains]
+    clean = [drop_zero_lengths([chain]).chains for chain in chains]
     known = [k for k, found in enumerate(clean) if found and len(found[0].bulges) > 1]
     shapes = []
     for k in known:
-        budget.work(len(clean[k][0].bulges))
-        shapes.append(LoopShape.of(loop_segments(closed_loop(clean[k][0]).vertices)))
+        budget.count_steps(len(clean[k][0].bulges))
+        shapes.append(LoopShape.of(loop_segments(make_closed_loop(clean[k][0]).vertices)))
     turns = [int(np.sign(compute_signed_area(shape.segments))) for shape in shapes]
     boxes = np.array([shape.box for shape in shapes]).reshape(-1, 4)
     over = set()
@@ -257,15 +262,15 @@ def boundaries(chains: Sequence[Chain], budget: Budget) -> list[Chain]:
         around[at] = False
         near = np.flatnonzero(around).tolist()
         rows = np.concatenate([shapes[m].rows for m in near] or [shape.rows[:0]])
-        budget.work(len(near) + len(rows) // 16)
+        budget.count_steps(len(near) + len(rows) // 16)
         outside = round(turns_around(*shape.segments[0].start, rows) / (2 * pi))
-        if outside and outside + turns[at] and not any(meet(shape, shapes[m], budget) for m in near):
+        if outside and outside + turns[at] and not any(loops_meet(shape, shapes[m], budget) for m in near):
             over.add(k)
     return [chain for k, chain in enumerate(chains) if k not in over]
 
 
-def meet(one: LoopShape, other: LoopShape, budget: Budget) -> bool:
-    budget.work(len(one.segments) + len(other.segments))
+def loops_meet(one: LoopShape, other: LoopShape, budget: Budget) -> bool:
+    budget.count_steps(len(one.segments) + len(other.segments))
     try:
         refuse_meeting_loops(one, other, str, str)
     except InputError:

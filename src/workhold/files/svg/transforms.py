@@ -7,10 +7,17 @@ from math import cos, degrees, radians, sin, tan
 
 from workhold.errors import InputError
 from workhold.files.outline.chain import Placement
-from workhold.files.svg.document import short
-from workhold.files.svg.viewport import ANGLES, LARGEST, LENGTH, ShapeElement, absolute, numbers
+from workhold.files.svg.document import shorten_text
+from workhold.files.svg.viewport import (
+    ANGLES,
+    LARGEST,
+    LENGTH,
+    ShapeElement,
+    read_absolute_length,
+    read_numbers,
+)
 
-__all__ = ["transform_of"]
+__all__ = ["read_transform"]
 
 FUNCTION = re.compile(r"\s*(?:,\s*)?(\w+)\s*\(([^()]*)\)")
 CSS_FUNCTION = re.compile(r"\s*(\w+)\(([^()]*)\)")
@@ -27,8 +34,8 @@ ATTRIBUTE = {
 }
 
 
-def transform_of(figure: ShapeElement) -> Placement:
-    """The map of an element's transform properties; refuses any that are not SVG's, or not in the plane."""
+def read_transform(figure: ShapeElement) -> Placement:
+    """Return the map of an element's transform properties; refuse any that are not SVG's, or not in the plane."""
     declarations, label = figure.declarations, figure.label
     given = {name: declarations[name][0] for name in PROPERTIES if name in declarations}
     given = {name: one for name, one in given.items() if one.text not in ("", "none", "initial", "unset")}
@@ -37,28 +44,32 @@ def transform_of(figure: ShapeElement) -> Placement:
     box = declarations.get("transform-box")
     if box and box[0].text != "view-box":
         raise InputError(
-            f"{label} has the transform-box '{short(box[0].text)}', which is not read: use view-box."
+            f"{label} has the transform-box '{shorten_text(box[0].text)}', which is not read: use view-box."
         )
-    x, y = origin(figure)
+    x, y = read_transform_origin(figure)
     placement = Placement(e=x, f=y)
     for name in ("translate", "rotate", "scale"):
         if name in given:
             # The words are the function's arguments, but for commas.
             words = given[name].text.removeprefix("z ")
-            placement = placement.after(functions(f"{name}({', '.join(words.split())})", True, figure))
+            placement = placement.compose_after(
+                parse_transform_functions(f"{name}({', '.join(words.split())})", True, figure)
+            )
     if "transform" in given:
-        placement = placement.after(functions(given["transform"].text, given["transform"].css, figure))
-    return placement.after(Placement(e=-x, f=-y))
+        placement = placement.compose_after(
+            parse_transform_functions(given["transform"].text, given["transform"].css, figure)
+        )
+    return placement.compose_after(Placement(e=-x, f=-y))
 
 
-def origin(figure: ShapeElement) -> tuple[float, float]:
-    """The point that stays in place, in user units; raises InputError for places that are not read."""
+def read_transform_origin(figure: ShapeElement) -> tuple[float, float]:
+    """Return the point that stays in place, in user units; raise InputError for places that are not read."""
     if "transform-origin" not in figure.declarations:
         return 0.0, 0.0
     given = figure.declarations["transform-origin"][0]
     text = given.text
     error = InputError(
-        f"{figure.label} has the transform-origin '{short(text)}', which is not read: write two lengths."
+        f"{figure.label} has the transform-origin '{shorten_text(text)}', which is not read: write two lengths."
     )
     words = text.lower().split()
     if words in (["initial"], ["unset"]):
@@ -77,7 +88,7 @@ def origin(figure: ShapeElement) -> tuple[float, float]:
         if share is None and word.endswith("%") and LENGTH.match(word):
             share = float(word[:-1]) / 100
         side = figure.viewport[axis]
-        plain = absolute(word, unitless=not given.css)
+        plain = read_absolute_length(word, unitless=not given.css)
         value = plain if share is None else None if side is None else share * side
         if value is None:
             raise error
@@ -85,31 +96,35 @@ def origin(figure: ShapeElement) -> tuple[float, float]:
     return place[0], place[1]
 
 
-def functions(text: str, css: bool, figure: ShapeElement) -> Placement:
-    """The map of a list of transform functions; raises InputError for functions that are not read."""
+def parse_transform_functions(text: str, css: bool, figure: ShapeElement) -> Placement:
+    """Return the map of a list of transform functions; raise InputError for functions that are not read."""
     text, label = text.strip(), figure.label
     placement = Placement()
     position = 0
     while position < len(text):
-        figure.budget.work()
+        figure.budget.count_steps()
         match = (CSS_FUNCTION if css else FUNCTION).match(text, position)
         step = None
         if match is not None:
             name, words = match.group(1), match.group(2)
-            values = css_values(name, words) if css else numbers(words, f"{label}: transform", figure.budget)
+            values = (
+                read_css_arguments(name, words)
+                if css
+                else read_numbers(words, f"{label}: transform", figure.budget)
+            )
             if values is not None and (len(values) in ATTRIBUTE.get(name, ()) or css):
-                step = single_transform(name, values)
+                step = make_single_transform(name, values)
         if match is None or step is None:
-            place = short(match.group(0) if match else text)
+            place = shorten_text(match.group(0) if match else text)
             units = ": in CSS, lengths have px, angles deg, and values commas between them" if css else ""
             raise InputError(f"{label} has the transform '{place}', which cannot be read{units}: correct it.")
-        placement = placement.after(step)
+        placement = placement.compose_after(step)
         position = match.end()
     return placement
 
 
-def css_values(name: str, text: str) -> list[float] | None:
-    """The arguments of a CSS transform function in user units and degrees; None when one is not valid."""
+def read_css_arguments(name: str, text: str) -> list[float] | None:
+    """Return the arguments of a CSS transform function in user units and degrees; None when one is not valid."""
     values: list[float] = []
     for word in text.split(","):
         match = LENGTH.match(word)
@@ -119,7 +134,7 @@ def css_values(name: str, text: str) -> list[float] | None:
         if number == 0 and not unit:
             value: float | None = 0.0
         elif name.startswith("translate"):
-            value = absolute(word, unitless=False)
+            value = read_absolute_length(word, unitless=False)
         elif name.startswith(("rotate", "skew")):
             value = number * degrees(ANGLES[unit]) if unit in ANGLES else None
         elif name.startswith("scale") and unit == "%":
@@ -132,8 +147,8 @@ def css_values(name: str, text: str) -> list[float] | None:
     return None if name == "rotate" and len(values) != 1 else values
 
 
-def single_transform(name: str, v: list[float]) -> Placement | None:
-    """One transform function, angles in degrees; None when it is none."""
+def make_single_transform(name: str, v: list[float]) -> Placement | None:
+    """Return one transform function, angles in degrees; None when it is none."""
     count = len(v)
     match name, count:
         case "matrix", 6:
@@ -154,7 +169,7 @@ def single_transform(name: str, v: list[float]) -> Placement | None:
             return (
                 turn
                 if count == 1
-                else Placement(e=v[1], f=v[2]).after(turn).after(Placement(e=-v[1], f=-v[2]))
+                else Placement(e=v[1], f=v[2]).compose_after(turn).compose_after(Placement(e=-v[1], f=-v[2]))
             )
         case "skewX", 1:
             return Placement(c=tan(radians(v[0])))

@@ -23,7 +23,7 @@ from attrs import frozen
 from workhold.errors import InputError
 from workhold.files.budget import Budget
 from workhold.files.outline.chain import Chain, Placement
-from workhold.files.svg.document import GEOMETRY, Declared, short
+from workhold.files.svg.document import GEOMETRY, Declared, shorten_text
 from workhold.geometry.segment import Point
 
 __all__ = [
@@ -35,12 +35,12 @@ __all__ = [
     "ViewBox",
     "Viewport",
     "Window",
-    "absolute",
-    "convex",
-    "fitted",
-    "numbers",
-    "physical",
-    "viewbox_of",
+    "read_absolute_length",
+    "is_convex",
+    "fit_viewbox",
+    "read_numbers",
+    "is_physical_length",
+    "read_viewbox",
 ]
 
 # Without ways back, so that no text takes longer than its length.
@@ -67,8 +67,8 @@ HEIGHTS = {"y", "height", "cy", "ry", "y1", "y2"}
 Viewport = tuple[float | None, float | None]
 
 
-def absolute(text: str, *, unitless: bool = True) -> float | None:
-    """A length in CSS pixels; None unless it is a number with an absolute unit, or with none."""
+def read_absolute_length(text: str, *, unitless: bool = True) -> float | None:
+    """Return a length in CSS pixels; None unless it is a number with an absolute unit, or with none."""
     match = LENGTH.match(text)
     if match is None or match.group(2).lower() not in PIXELS:
         return None
@@ -76,26 +76,26 @@ def absolute(text: str, *, unitless: bool = True) -> float | None:
     return None if abs(value) > LARGEST or (value and not match.group(2) and not unitless) else value
 
 
-def physical(text: str) -> bool:
-    """Whether a length is in a unit of paper, not in pixels."""
+def is_physical_length(text: str) -> bool:
+    """Return whether a length is in a unit of paper, not in pixels."""
     match = LENGTH.match(text)
     return match is not None and match.group(2).lower() in PIXELS and match.group(2).lower() not in ("", "px")
 
 
-def numbers(text: str, what: str, budget: Budget) -> list[float]:
-    """All numbers of a list separated by blanks and commas; refuses more than ``budget`` has."""
+def read_numbers(text: str, what: str, budget: Budget) -> list[float]:
+    """Return all numbers of a list separated by blanks and commas; refuse more than ``budget`` has."""
     values: list[float] = []
     text, position = text.rstrip(), 0
     while position < len(text):
         match = LISTED.match(text, position)
         if match is None:
-            raise InputError(f"{what} '{short(text)}' is not a list of numbers: correct it.")
+            raise InputError(f"{what} '{shorten_text(text)}' is not a list of numbers: correct it.")
         values.append(float(match.group(1)))
         position = match.end()
         if len(values) % budget.PERIOD == 0:
             budget.spend(budget.PERIOD // 2)
     if not all(abs(value) <= LARGEST for value in values):
-        raise InputError(f"{what} '{short(text)}' has a number that is too large: correct it.")
+        raise InputError(f"{what} '{shorten_text(text)}' has a number that is too large: correct it.")
     return values
 
 
@@ -118,36 +118,36 @@ class ShapeElement:
     viewport: Viewport
     budget: Budget
 
-    def given(self, name: str) -> Declared | None:
-        """The value of a geometry property or attribute; None when there is none."""
+    def find_given_value(self, name: str) -> Declared | None:
+        """Return the value of a geometry property or attribute; None when there is none."""
         if name in GEOMETRY:
             return self.declarations[name][0] if name in self.declarations else None
         text = self.element.get(name)
         return None if text is None else Declared(text.strip(), css=False)
 
-    def length(self, name: str, default: float = 0.0) -> float:
-        """A length in user units.
+    def read_length(self, name: str, default: float = 0.0) -> float:
+        """Return a length in user units.
 
         Raises
         ------
         InputError
             For anything but a number with an absolute unit, or percents of a viewport that is known.
         """
-        given = self.given(name)
+        given = self.find_given_value(name)
         if given is None or given.text in ("auto", "initial"):
             return default
-        value = absolute(given.text, unitless=not given.css)
+        value = read_absolute_length(given.text, unitless=not given.css)
         if value is None and given.text.endswith("%"):
-            value = self.percent(given.text, name)
+            value = self.read_percentage(given.text, name)
         if value is None:
             raise InputError(
-                f'{self.label} has {name}="{short(given.text)}", which is not a plain length: write a number'
+                f'{self.label} has {name}="{shorten_text(given.text)}", which is not a plain length: write a number'
                 f"{' with px' if given.css else ''}."
             )
         return value
 
-    def percent(self, text: str, name: str) -> float | None:
-        """Percents of the viewport in user units (SVG 2, 8.9); None when the viewport is not known."""
+    def read_percentage(self, text: str, name: str) -> float | None:
+        """Return the percents of the viewport in user units (SVG 2, 8.9); None when the viewport is not known."""
         width, height = self.viewport
         match = LENGTH.match(text)
         if name == "r":
@@ -167,23 +167,23 @@ ALIGNMENT = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 ASPECT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?: (meet|slice))?$")
 
 
-def viewbox_of(text: str | None, label: str, budget: Budget) -> ViewBox | None:
-    """Left, top, width and height of a viewBox; None when there is none.
+def read_viewbox(text: str | None, label: str, budget: Budget) -> ViewBox | None:
+    """Return the left, top, width and height of a viewBox; None when there is none.
 
     Refuses one that is not four numbers with a positive size.
     """
     if text is None:
         return None
-    values = numbers(text, f"the viewBox of {label}", budget)
+    values = read_numbers(text, f"the viewBox of {label}", budget)
     if len(values) != 4 or not (values[2] > 0 and values[3] > 0):
         raise InputError(
-            f"the viewBox '{short(text)}' of {label} is not usable: it must be x y width height."
+            f"the viewBox '{shorten_text(text)}' of {label} is not usable: it must be x y width height."
         )
     return values[0], values[1], values[2], values[3]
 
 
-def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -> Placement:
-    """The map from a viewBox to a viewport at the origin (SVG 2, 8.2)."""
+def fit_viewbox(box: ViewBox, width: float, height: float, aspect: str, label: str) -> Placement:
+    """Return the map from a viewBox to a viewport at the origin (SVG 2, 8.2)."""
     words = aspect.removeprefix("defer").split() or ["xMidYMid"]
     sx, sy = width / box[2], height / box[3]
     if words[0] == "none":
@@ -191,7 +191,7 @@ def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -
     match = ASPECT.match(" ".join(words))
     if match is None:
         raise InputError(
-            f"{label} has the preserveAspectRatio '{short(aspect)}', which cannot be read: correct it."
+            f"{label} has the preserveAspectRatio '{shorten_text(aspect)}', which cannot be read: correct it."
         )
     scale = max(sx, sy) if match[3] == "slice" else min(sx, sy)
     left = ALIGNMENT[match[1]] * (width - scale * box[2])
@@ -199,8 +199,8 @@ def fitted(box: ViewBox, width: float, height: float, aspect: str, label: str) -
     return Placement(a=scale, d=scale, e=left - scale * box[0], f=top - scale * box[1])
 
 
-def convex(points: tuple[Point, ...]) -> bool:
-    """Whether a closed polygon, its first point repeated at its end, is convex and not crossed by itself."""
+def is_convex(points: tuple[Point, ...]) -> bool:
+    """Return whether a closed polygon, its first point repeated at its end, is convex and not crossed by itself."""
     steps = [(x - u, y - v) for (u, v), (x, y) in pairwise(points) if (x, y) != (u, v)]
     if len(steps) < 3:
         return False
@@ -224,25 +224,25 @@ class Window:
     corners: tuple[Point, ...]
     label: str
 
-    def shows(self, chain: Chain, budget: Budget) -> Literal["all", "some", "nothing"]:
-        """How much of a chain is inside, as far as the window's edges, taken one by one, show."""
+    def classify_visibility(self, chain: Chain, budget: Budget) -> Literal["all", "some", "nothing"]:
+        """Return how much of a chain is inside, as far as the window's edges, taken one by one, show."""
         area = sum(u * y - v * x for (u, v), (x, y) in pairwise(self.corners))
         size = max(hypot(x - u, y - v) for (u, v), (x, y) in pairwise(self.corners))
         whole, outside = True, False
         for (u, v), (x, y) in pairwise(self.corners):
-            budget.work(len(chain.points))
+            budget.count_steps(len(chain.points))
             side = hypot(x - u, y - v) * (1 if area > 0 else -1)
             if side == 0:
                 continue
             outward = ((y - v) / side, (u - x) / side)
             edge = outward[0] * u + outward[1] * v
-            outside = outside or -reach(chain, (-outward[0], -outward[1])) >= edge - ON_EDGE * size
-            whole = whole and reach(chain, outward) <= edge + ON_EDGE * size
+            outside = outside or -measure_reach(chain, (-outward[0], -outward[1])) >= edge - ON_EDGE * size
+            whole = whole and measure_reach(chain, outward) <= edge + ON_EDGE * size
         return "all" if whole else "nothing" if outside else "some"
 
 
-def reach(chain: Chain, direction: Point) -> float:
-    """How far a chain reaches in a direction (a unit vector): the largest product with one of its points."""
+def measure_reach(chain: Chain, direction: Point) -> float:
+    """Return how far a chain reaches in a direction (a unit vector): the largest product with one of its points."""
     nx, ny = direction
     farthest = max(nx * x + ny * y for x, y in chain.points)
     for k, bulge in enumerate(chain.bulges):

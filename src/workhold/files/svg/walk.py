@@ -8,22 +8,29 @@ from xml.etree.ElementTree import Element
 
 from attrs import evolve, frozen
 
-from workhold.errors import InputError, shortened
+from workhold.errors import InputError, shorten_middle
 from workhold.files.budget import Budget
-from workhold.files.outline.chain import Chain, Placement, counted
+from workhold.files.outline.chain import Chain, Placement, format_count
 from workhold.files.outline.curves import CurveReader
-from workhold.files.svg.document import Declared, Document, Styles, href, local_name, short
+from workhold.files.svg.document import Declared, Document, Styles, get_local_name, read_link, shorten_text
 from workhold.files.svg.shapes import SHAPES
-from workhold.files.svg.style import INITIAL, Style, boundaries, computed, link_of, refuse_effects
-from workhold.files.svg.transforms import transform_of
+from workhold.files.svg.style import (
+    INITIAL,
+    Style,
+    compute_style,
+    keep_painted_boundaries,
+    link_of,
+    refuse_effects,
+)
+from workhold.files.svg.transforms import read_transform
 from workhold.files.svg.viewport import (
     LARGEST,
     ShapeElement,
     Viewport,
     Window,
-    convex,
-    fitted,
-    viewbox_of,
+    fit_viewbox,
+    is_convex,
+    read_viewbox,
 )
 
 __all__ = ["ElementNesting", "SvgWalk"]
@@ -85,12 +92,12 @@ class SvgWalk:
 
     def visit(self, element: Element, nest: ElementNesting) -> None:
         self.budget.spend()
-        tag = local_name(element)
+        tag = get_local_name(element)
         if tag in SILENT:
             return
-        figure = self.figure(element, nest)
+        figure = self.make_shape_element(element, nest)
         label = figure.label
-        with self.budget.nested(label):
+        with self.budget.count_nesting(label):
             try:
                 self.visit_figure(figure, nest)
             except ArithmeticError as error:
@@ -100,21 +107,23 @@ class SvgWalk:
 
     def visit_figure(self, figure: ShapeElement, nest: ElementNesting) -> None:
         element, label = figure.element, figure.label
-        tag = local_name(element)
-        style = computed(figure.declarations, nest.style, self.styles, label)
-        if not (style.displayed and suits(element, label)):
+        tag = get_local_name(element)
+        style = compute_style(figure.declarations, nest.style, self.styles, label)
+        if not (style.displayed and suits_conditions(element, label)):
             self.hidden += 1
             return
         refuse_effects(figure)
-        placement = nest.placement.after(transform_of(figure))
+        placement = nest.placement.compose_after(read_transform(figure))
         if tag == "use":
-            placement = placement.after(Placement(e=figure.length("x"), f=figure.length("y")))
+            placement = placement.compose_after(
+                Placement(e=figure.read_length("x"), f=figure.read_length("y"))
+            )
         refuse_absurd(placement, label)
         look = tuple(
             figure.declarations[name][0].text if name in figure.declarations else around
             for name, around in zip(LOOKS, nest.look, strict=True)
         )
-        inner = self.clipped(figure, evolve(nest, placement=placement, style=style, look=look))
+        inner = self.clip_nesting(figure, evolve(nest, placement=placement, style=style, look=look))
         if element is self.document.root:
             if placement != nest.placement:
                 raise InputError(
@@ -126,7 +135,7 @@ class SvgWalk:
                 raise InputError(f"{label} is a link within a link, which not all programs show: ungroup it.")
             self.visit_children(element, evolve(inner, anchored=nest.anchored or tag == "a"))
         elif tag == "svg":
-            self.visit_view(figure, inner, (figure.length("x"), figure.length("y")), figure)
+            self.visit_view(figure, inner, (figure.read_length("x"), figure.read_length("y")), figure)
         elif tag == "use":
             self.visit_use(figure, inner)
         elif tag in SHAPES:
@@ -134,21 +143,23 @@ class SvgWalk:
         else:
             self.ignored[tag] += style.shown
 
-    def figure(self, element: Element, nest: ElementNesting) -> ShapeElement:
-        """An element with its values and what messages call it."""
+    def make_shape_element(self, element: Element, nest: ElementNesting) -> ShapeElement:
+        """Return an element with its values and what messages call it."""
         label = self.document.name(element) + nest.suffix
-        return ShapeElement(element, label, self.styles.of(element), nest.viewport, self.budget)
+        return ShapeElement(
+            element, label, self.styles.list_declared_values(element), nest.viewport, self.budget
+        )
 
     def visit_children(self, parent: Element, nest: ElementNesting) -> None:
-        """Visits the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
+        """Visit the elements in a container; of a <switch>, the first that suits (SVG 2, 5.9.2)."""
         for element in parent:
-            if not self.document.drawn(element):
+            if not self.document.is_svg_element(element):
                 continue
-            if local_name(parent) == "switch":
+            if get_local_name(parent) == "switch":
                 label = self.document.name(element) + nest.suffix
-                if not suits(element, label):
+                if not suits_conditions(element, label):
                     continue
-                if local_name(element) in SILENT | {"a", "foreignObject"}:
+                if get_local_name(element) in SILENT | {"a", "foreignObject"}:
                     raise InputError(
                         f"{label} is the choice of a switch, which not all programs show: remove it."
                     )
@@ -157,23 +168,23 @@ class SvgWalk:
             self.visit(element, nest)
 
     def visit_shape(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Adds the chains of a shape that is seen; refuses transforms that crush the drawing."""
+        """Add the chains of a shape that is seen; refuse transforms that crush the drawing."""
         style, label = nest.style, figure.label
         if not style.shown or not (style.stroked or style.filled):
             self.hidden += 1
             return
-        if style.markers and local_name(figure.element) in MARKED:
+        if style.markers and get_local_name(figure.element) in MARKED:
             self.ignored["marker"] += 1
         if nest.placement.flat:
             raise InputError(f"{label} has a transform that crushes it to a line: correct it.")
-        found = list(self.placed(figure, nest))
+        found = list(self.place_shape(figure, nest))
         if not style.stroked and not style.even_odd and len(found) > 1:
-            bounding = boundaries(found, self.budget)
+            bounding = keep_painted_boundaries(found, self.budget)
             self.painted_over += len(found) - len(bounding)
             found = bounding
         self.hidden += not found
         for window in nest.windows:
-            shown = {window.shows(chain, self.budget) for chain in found}
+            shown = {window.classify_visibility(chain, self.budget) for chain in found}
             if shown == {"nothing"}:
                 self.hidden += 1
                 return
@@ -186,178 +197,202 @@ class SvgWalk:
         if look:
             self.looks.update((label, look) for chain in found for label in chain.labels)
 
-    def placed(self, figure: ShapeElement, nest: ElementNesting) -> Iterator[Chain]:
-        """The chains of a shape in mm; of a shape without stroke, what bounds its fill."""
-        for shape in SHAPES[local_name(figure.element)](figure):
+    def place_shape(self, figure: ShapeElement, nest: ElementNesting) -> Iterator[Chain]:
+        """Yield the chains of a shape in mm; of a shape without stroke, what bounds its fill."""
+        for shape in SHAPES[get_local_name(figure.element)](figure):
             if not nest.style.stroked:
                 if len(shape.bulges) == 1 and not shape.bulges[0] and not shape.curved:
                     continue  # a line has nothing to fill
-                shape = shape.closed()
-            chain = self.curves.chain(shape.points, shape.bulges, shape.labels, shape.curved, nest.placement)
+                shape = shape.close()
+            chain = self.curves.make_chain(
+                shape.points, shape.bulges, shape.labels, shape.curved, nest.placement
+            )
             if chain is not None:
                 yield chain
 
     def visit_use(self, figure: ShapeElement, nest: ElementNesting) -> None:
-        """Visits what a <use> shows; refuses links to nothing, to other files and to themselves."""
-        label, link = figure.label, href(figure.element)
-        target = self.document.linked(link)
+        """Visit what a <use> shows; refuse links to nothing, to other files and to themselves."""
+        label, link = figure.label, read_link(figure.element)
+        target = self.document.find_linked(link)
         if target is None:
-            raise InputError(f"{label} shows '{short(link)}', which is not in the file: unlink or remove it.")
+            raise InputError(
+                f"{label} shows '{shorten_text(link)}', which is not in the file: unlink or remove it."
+            )
         if link in nest.links:
             raise InputError(f"{label} shows itself: unlink it.")
-        self.budget.foresee(self.written_out(target))
-        inner = evolve(nest, suffix=shortened(f" of {label}", LONGEST_SUFFIX), links=(*nest.links, link))
-        tag = local_name(target)
+        self.budget.refuse_too_many_ahead(self.count_shown_elements(target))
+        inner = evolve(nest, suffix=shorten_middle(f" of {label}", LONGEST_SUFFIX), links=(*nest.links, link))
+        tag = get_local_name(target)
         if tag in ("symbol", "svg"):
-            with self.budget.nested(label):
+            with self.budget.count_nesting(label):
                 self.visit_target(target, figure, inner)
         else:
             self.visit(target, inner)
 
-    def written_out(self, element: Element, depth: int = 0) -> int:
-        """How many elements are visited at least where one is shown; links double it from one to the next."""
-        tag = local_name(element)
-        if element in self.sizes or depth > MOST_FORESEEN or may_be_hidden(element, self.styles.of(element)):
+    def count_shown_elements(self, element: Element, depth: int = 0) -> int:
+        """Return how many elements are visited at least where one is shown; links double it from one to the next."""
+        tag = get_local_name(element)
+        if (
+            element in self.sizes
+            or depth > MOST_FORESEEN
+            or may_be_hidden(element, self.styles.list_declared_values(element))
+        ):
             return self.sizes.get(element, 1)
         # What shows itself is refused when it is visited.
         self.sizes[element] = 1
         shown: list[Element] = []
         if tag == "use":
-            target = self.document.linked(href(element))
+            target = self.document.find_linked(read_link(element))
             shown = [] if target is None else [target]
         elif tag in CONTAINERS_FORESEEN:
-            shown = [one for one in element if self.document.drawn(one)]
-        self.sizes[element] = 1 + sum(self.written_out(one, depth + 1) for one in shown)
+            shown = [one for one in element if self.document.is_svg_element(one)]
+        self.sizes[element] = 1 + sum(self.count_shown_elements(one, depth + 1) for one in shown)
         return self.sizes[element]
 
     def visit_target(self, target: Element, use: ShapeElement, nest: ElementNesting) -> None:
-        """Visits a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
+        """Visit a symbol or nested drawing in the size that a <use> gives it (SVG 2, 5.5 and 5.6).
 
         Refuses a transform, size or reference point of a symbol, which programs draw differently.
         """
-        own = self.figure(target, nest)
+        own = self.make_shape_element(target, nest)
         label = own.label
-        style = computed(own.declarations, nest.style, self.styles, label)
-        if not (style.displayed and suits(target, label)):
+        style = compute_style(own.declarations, nest.style, self.styles, label)
+        if not (style.displayed and suits_conditions(target, label)):
             raise InputError(
                 f"{label} is switched off itself, which programs take differently: switch off the use."
             )
         refuse_effects(own)
-        inner = self.clipped(own, evolve(nest, style=style))
-        if local_name(target) == "symbol":
-            names = ["x", "y", "refX", "refY", *(n for n in ("width", "height") if use.given(n) is None)]
-            if any(own.given(name) is not None for name in names):
+        inner = self.clip_nesting(own, evolve(nest, style=style))
+        if get_local_name(target) == "symbol":
+            names = [
+                "x",
+                "y",
+                "refX",
+                "refY",
+                *(n for n in ("width", "height") if use.find_given_value(n) is None),
+            ]
+            if any(own.find_given_value(name) is not None for name in names):
                 raise InputError(
                     f"{label} has a place or size, which programs draw differently: give them to the use."
                 )
             self.visit_view(own, inner, (0.0, 0.0), use)
         else:
-            self.visit_view(own, inner, (own.length("x"), own.length("y")), use)
+            self.visit_view(own, inner, (own.read_length("x"), own.read_length("y")), use)
 
     def visit_view(
         self, figure: ShapeElement, nest: ElementNesting, corner: tuple[float, float], sizes: ShapeElement
     ) -> None:
-        """Visits the children of a nested drawing or symbol in its own viewport.
+        """Visit the children of a nested drawing or symbol in its own viewport.
 
         Refuses a transform, which programs draw differently, and sizes that are not known.
         """
         element, label = figure.element, figure.label
-        if transform_of(figure) != Placement():
+        if read_transform(figure) != Placement():
             raise InputError(f"{label} has a transform, which programs draw differently: put it on a group.")
-        box = viewbox_of(element.get("viewBox"), label, self.budget)
+        box = read_viewbox(element.get("viewBox"), label, self.budget)
         sides: list[float | None] = []
         for name in ("width", "height"):
-            asked = sizes.given(name)
+            asked = sizes.find_given_value(name)
             giver = figure if asked is None or asked.text == "auto" else sizes
             whole = figure.viewport[name == "height"]
-            sides.append(whole if giver.given(name) is None else giver.length(name, default=-1.0))
+            sides.append(
+                whole if giver.find_given_value(name) is None else giver.read_length(name, default=-1.0)
+            )
         width, height = sides
-        view = nest.placement.after(Placement(e=corner[0], f=corner[1]))
+        view = nest.placement.compose_after(Placement(e=corner[0], f=corner[1]))
         if width is None or height is None:
             if box is not None:
                 raise InputError(f"{label} has a viewBox, but no size: give it width and height.")
         elif not (width > 0 and height > 0):
             self.hidden += 1
             return
-        elif not visible_overflow(figure.declarations):
+        elif not shows_overflow(figure.declarations):
             corners = ((0.0, 0.0), (width, 0.0), (width, height), (0.0, height), (0.0, 0.0))
             window = Window(tuple(map(view, corners)), f"the edge of {label}")
             nest = evolve(nest, windows=(*nest.windows, window))
         if box is not None and width is not None and height is not None:
-            view = view.after(fitted(box, width, height, element.get("preserveAspectRatio", ""), label))
+            view = view.compose_after(
+                fit_viewbox(box, width, height, element.get("preserveAspectRatio", ""), label)
+            )
             width, height = box[2], box[3]
         self.visit_children(element, evolve(nest, placement=view, viewport=(width, height)))
 
-    def clipped(self, figure: ShapeElement, nest: ElementNesting) -> ElementNesting:
-        """The nest with the window of an element's ``clip-path``; refuses any but one convex polygon."""
+    def clip_nesting(self, figure: ShapeElement, nest: ElementNesting) -> ElementNesting:
+        """Return the nest with the window of an element's ``clip-path``; refuse any but one convex polygon."""
         declarations, label, element = figure.declarations, figure.label, figure.element
         text = declarations["clip-path"][0].text if "clip-path" in declarations else "none"
         if text.lower() in ("none", "initial", "unset", ""):
             return nest
         error = InputError(
-            f"{label} has the clip-path '{short(text)}', which is not one plain rectangle or convex "
+            f"{label} has the clip-path '{shorten_text(text)}', which is not one plain rectangle or convex "
             "polygon: cut the drawing itself, or release the clip."
         )
         # A drawing has two coordinate systems, outside and inside; programs differ in which of them a clip
         # path is.
-        target = self.document.linked(href(element)) if local_name(element) == "use" else element
-        if target is not None and local_name(target) in ("svg", "symbol"):
+        target = (
+            self.document.find_linked(read_link(element)) if get_local_name(element) == "use" else element
+        )
+        if target is not None and get_local_name(target) in ("svg", "symbol"):
             raise InputError(
                 f"{label} has a clip-path, which programs place differently: put it on a group around."
             )
         link = link_of(text)
-        clip = None if link is None or link[1] else self.document.linked(link[0])
+        clip = None if link is None or link[1] else self.document.find_linked(link[0])
         if (
             clip is None
-            or local_name(clip) != "clipPath"
+            or get_local_name(clip) != "clipPath"
             or clip.get("clipPathUnits", "userSpaceOnUse") != "userSpaceOnUse"
         ):
             raise error
-        shapes = [child for child in clip if local_name(child) not in SILENT]
+        shapes = [child for child in clip if get_local_name(child) not in SILENT]
         placement = nest.placement
         style = INITIAL
-        for outer in self.document.around(clip):
-            style = computed(self.styles.of(outer), style, self.styles, label)
+        for outer in self.document.list_ancestors(clip):
+            style = compute_style(self.styles.list_declared_values(outer), style, self.styles, label)
         for part in (clip, *shapes[:1]):
-            values = self.styles.of(part)
-            style = computed(values, style, self.styles, label)
-            if "clip-path" in values or not (style.displayed and style.shown) or not suits(part, label):
+            values = self.styles.list_declared_values(part)
+            style = compute_style(values, style, self.styles, label)
+            if (
+                "clip-path" in values
+                or not (style.displayed and style.shown)
+                or not suits_conditions(part, label)
+            ):
                 raise error
             own = ShapeElement(part, self.document.name(part), values, nest.viewport, self.budget)
             refuse_effects(evolve(own, label=label))
-            placement = placement.after(transform_of(own))
+            placement = placement.compose_after(read_transform(own))
             refuse_absurd(placement, label)
-        if len(shapes) != 1 or not self.document.drawn(shapes[0]):
+        if len(shapes) != 1 or not self.document.is_svg_element(shapes[0]):
             raise error
-        tag = local_name(shapes[0])
+        tag = get_local_name(shapes[0])
         outlines = list(SHAPES[tag](own)) if tag in ("rect", "polygon", "path") else []
-        if len(outlines) != 1 or any(outlines[0].bulges) or not convex(outlines[0].closed().points):
+        if len(outlines) != 1 or any(outlines[0].bulges) or not is_convex(outlines[0].close().points):
             raise error
-        window = Window(tuple(map(placement, outlines[0].closed().points)), f"the clip-path of {label}")
+        window = Window(tuple(map(placement, outlines[0].close().points)), f"the clip-path of {label}")
         return evolve(nest, windows=(*nest.windows, window))
 
-    def remarks(self) -> list[str]:
-        """What was left out, one sentence for each reason."""
+    def list_remarks(self) -> list[str]:
+        """Return what was left out, one sentence for each reason."""
         remarks = []
         if +self.ignored:
             kinds = ", ".join(f"{count} {kind}" for kind, count in sorted((+self.ignored).items()))
             remarks.append(f"Ignored elements that are no outline: {kinds}.")
         if self.painted_over:
             remarks.append(
-                f"Left out {counted(self.painted_over, 'loop that is', 'loops that are')} painted over by "
+                f"Left out {format_count(self.painted_over, 'loop that is', 'loops that are')} painted over by "
                 "the rest of the "
                 "shape (fill-rule nonzero); for a hole, use the even-odd rule or turn the loop round."
             )
         if self.hidden:
             remarks.append(
-                f"Left out {counted(self.hidden, 'hidden element', 'hidden elements')} (switched off, "
+                f"Left out {format_count(self.hidden, 'hidden element', 'hidden elements')} (switched off, "
                 "transparent, empty, or without fill and stroke); make them visible to read them."
             )
         return remarks
 
 
 def refuse_absurd(placement: Placement, label: str) -> None:
-    """Refuses a map to mm with which nothing can be reckoned."""
+    """Refuse a map to mm with which nothing can be reckoned."""
     numbers = (placement.a, placement.b, placement.c, placement.d)
     if not (
         all(abs(number) <= MOST_SCALE for number in numbers)
@@ -367,8 +402,8 @@ def refuse_absurd(placement: Placement, label: str) -> None:
         raise InputError(f"{label} has a transform or size that is too large: correct it.")
 
 
-def suits(element: Element, label: str) -> bool:
-    """Whether an element's conditions hold (SVG 2, 5.9); refuses conditions that programs judge differently."""
+def suits_conditions(element: Element, label: str) -> bool:
+    """Return whether an element's conditions hold (SVG 2, 5.9); refuse conditions that programs judge differently."""
     if element.get("requiredExtensions") is not None:
         return False
     if element.get("systemLanguage") is not None:
@@ -382,14 +417,14 @@ def suits(element: Element, label: str) -> bool:
     return True
 
 
-def visible_overflow(declarations: dict[str, list[Declared]]) -> bool:
-    """Whether a nested drawing shows what reaches over its edge."""
+def shows_overflow(declarations: dict[str, list[Declared]]) -> bool:
+    """Return whether a nested drawing shows what reaches over its edge."""
     names = ("overflow", "overflow-x", "overflow-y")
     given = [declarations[name][0].text for name in names if name in declarations]
     return bool(given) and all(text in ("visible", "auto") for text in given)
 
 
 def may_be_hidden(element: Element, declarations: dict[str, list[Declared]]) -> bool:
-    """Whether something says of an element that it may be taken away with all that is in it."""
+    """Return whether something says of an element that it may be taken away with all that is in it."""
     is_conditional = any(element.get(name) is not None for name in CONDITIONS)
     return is_conditional or "display" in declarations or "opacity" in declarations

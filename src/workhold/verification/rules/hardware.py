@@ -23,22 +23,22 @@ from workhold.fixels.contacts import CLAMP_TIP, WALL_END
 from workhold.fixels.toolkit import Carrier, Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.query import Query
-from workhold.verification.ball_geometry import BallOutline, Point, Side, exact_point
-from workhold.verification.contacts import BallContact, BallPose, met_by, standoff
+from workhold.verification.ball_geometry import BallOutline, Point, Side, make_exact_point
+from workhold.verification.contacts import BallContact, BallPose, compute_standoff, select_outline_for
 from workhold.verification.rules.travel import (
     WAYS,
     Stroke,
     clamp_place,
-    direction_of,
-    directions_of,
+    find_clamp_line,
+    find_direction,
     is_along_x,
-    line_of,
-    nearest_row_findings,
-    opening_findings,
-    travelled,
+    judge_nearest_rows,
+    judge_opening,
+    list_directions,
+    measure_travel,
 )
-from workhold.verification.rules.wall import Jaw, WallContact, flush_findings, wall_contacts
-from workhold.verification.tolerances import AGREEMENT, Finding, number, rule
+from workhold.verification.rules.wall import Jaw, WallContact, flush_findings, make_wall_contacts
+from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
 
 __all__ = ["ToolkitRules"]
 
@@ -59,7 +59,7 @@ class ToolkitRules:
     every: bool = field(default=False, kw_only=True)
 
     @classmethod
-    def of(cls, query: Query) -> ToolkitRules:
+    def from_query(cls, query: Query) -> ToolkitRules:
         return cls(query.toolkit, every=query.listing == "all")
 
     @cached_property
@@ -97,7 +97,7 @@ class ToolkitRules:
         return None
 
     def has_carriers(self, fixture: Fixture) -> bool:
-        """Whether there is all that a fixture stands on: no clamp that moves in a direction not asked for."""
+        """Return whether there is all that a fixture stands on: no clamp that moves in a direction not asked for."""
         return all(peg.carrier in self.carriers for peg in fixture.pegs)
 
     @property
@@ -193,13 +193,13 @@ class ToolkitRules:
         """The largest radius of pegs and tips, in mm."""
         return max(one.peg_radius for one in self.carriers.values())
 
-    def placed(self, fixture: Fixture) -> list[tuple[str, Peg]]:
-        """The pegs and clamps of a fixture by name, without the ends of the contact with a wall."""
+    def list_placed(self, fixture: Fixture) -> list[tuple[str, Peg]]:
+        """Return the pegs and clamps of a fixture by name, without the ends of the contact with a wall."""
         named = zip(self.names, fixture.pegs, strict=False)
         return [(name, peg) for name, peg in named if not peg.is_on_wall]
 
-    def travels(self, fixture: Fixture) -> dict[str, float]:
-        """How far in mm what moves has travelled, by what each travel is called."""
+    def compute_travels(self, fixture: Fixture) -> dict[str, float]:
+        """Return how far in mm what moves has travelled, by what each travel is called."""
         if not self.clamps:
             return {"opening": fixture.travel}
         if self.clamps == 1:
@@ -208,8 +208,8 @@ class ToolkitRules:
         return {f"place of the tip of {name} on its line": travel for name, travel in named}
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
-        """Whether the pegs of a fixture are those of its type and directions, in their order but for jaws."""
-        directions, carriers = directions_of(fixture), self.carriers.values()
+        """Return whether the pegs of a fixture are those of its type and directions, in their order but for jaws."""
+        directions, carriers = list_directions(fixture), self.carriers.values()
         pegs = next((one.pegs for one in self.toolkit.arrangements if one.name == fixture.type), ())
         still = [
             c.name for c, count in zip(carriers, pegs, strict=False) for _ in range(count) if c.on is None
@@ -218,8 +218,9 @@ class ToolkitRules:
         there, order = [peg.carrier for peg in fixture.pegs], sorted if len(self.lattices) > 1 else list
         return len(directions) == self.clamps and order(there) == order(wanted)
 
-    def taken(self, fixture: Fixture) -> Fixture:
-        """A fixture as it is read, with the travels that put the tips of clamps where they are written.
+    def complete_fixture(self, fixture: Fixture) -> Fixture:
+        """Return a fixture as it is read, with the travels that put the tips of clamps where they are
+        written.
 
         Raises
         ------
@@ -235,7 +236,8 @@ class ToolkitRules:
                 raise InputError(f"a peg's {self.lattices[0].noun} is not {' or '.join(self.carriers)}")
             return fixture
         moved = [
-            travelled(peg, self.carriers.get(peg.carrier, self.lattices[0])) for peg in fixture.pegs[-clamps:]
+            measure_travel(peg, self.carriers.get(peg.carrier, self.lattices[0]))
+            for peg in fixture.pegs[-clamps:]
         ]
         pair = None if fixture.pair is None else evolve(fixture.pair, travels=(moved[0], moved[1]))
         return evolve(fixture, travel=moved[0], pair=pair)
@@ -246,42 +248,44 @@ class ToolkitRules:
         (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
         return x + arb(pitch_x) * peg.column, y + arb(pitch_y) * peg.row
 
-    def way(self, peg: Peg) -> tuple[float, float]:
-        """Unit vector along which a peg moves as its travel grows; (0, 0) of one that stands still."""
+    def find_way(self, peg: Peg) -> tuple[float, float]:
+        """Return the unit vector along which a peg moves as its travel grows; (0, 0) of one that stands still."""
         travel = self.carriers[peg.carrier].travel
         return (0.0, 0.0) if travel is None else travel.unit
 
-    def contact(self, peg: Peg, side: Side) -> BallContact:
-        """The contact of a peg or a tip, round or with a flat, which lies on lines, with a side."""
+    def make_contact(self, peg: Peg, side: Side) -> BallContact:
+        """Return the contact of a peg or a tip, round or with a flat, which lies on lines, with a side."""
         carrier = self.carriers[peg.carrier]
         body = None if carrier.flat is None else arb(carrier.peg_radius)
-        radius = standoff(side, carrier.peg_radius, carrier.flat)
-        return BallContact(self.place(peg), exact_point(*self.way(peg)), side, radius, body=body)
+        radius = compute_standoff(side, carrier.peg_radius, carrier.flat)
+        return BallContact(self.place(peg), make_exact_point(*self.find_way(peg)), side, radius, body=body)
 
-    def contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
-        """The contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
+    def make_contacts(self, fixture: Fixture, outline: BallOutline) -> list[BallContact]:
+        """Return the contacts of all pegs of a fixture, in their order; each of two clamps has its own travel."""
         on_wall = [outline.faces[peg.face] for peg in fixture.pegs if peg.is_on_wall]
-        written = BallPose.written(fixture.pose)
-        ends = iter(wall_contacts(on_wall, met_by(outline, WALL), written) if on_wall else ())
+        written = BallPose.from_written(fixture.pose)
+        ends = iter(
+            make_wall_contacts(on_wall, select_outline_for(outline, WALL), written) if on_wall else ()
+        )
         out = [
-            next(ends) if peg.is_on_wall else self.contact(peg, outline.faces[peg.face])
+            next(ends) if peg.is_on_wall else self.make_contact(peg, outline.faces[peg.face])
             for peg in fixture.pegs
         ]
         if fixture.pair is not None:
             out[-1] = evolve(out[-1], travel=1)
         return out
 
-    def pressed(
+    def find_pressed_contacts(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> list[BallContact]:
-        """The contacts at a pose that take up the forces: on a jaw with ends those of the common stretch."""
+        """Return the contacts at a pose that take up the forces: on a jaw with ends those of the common stretch."""
         if self.jaw is None:
             return [*contacts]
         ends = [contact for contact in contacts if isinstance(contact, WallContact)]
-        found = iter(self.jaw.contacts(ends, met_by(outline, WALL), pose))
+        found = iter(self.jaw.limit_contacts(ends, select_outline_for(outline, WALL), pose))
         return [next(found) if isinstance(contact, WallContact) else contact for contact in contacts]
 
-    def reach_findings(
+    def judge_reach(
         self,
         fixture: Fixture,
         contacts: Sequence[BallContact],
@@ -289,7 +293,8 @@ class ToolkitRules:
         outline: BallOutline,
         shares: Sequence[arb],
     ) -> Iterator[Finding]:
-        """Whether a jaw with ends reaches the part where it is pressed, and the pegs' columns are the best.
+        """Check whether a jaw with ends reaches the part where it is pressed, and the pegs' columns are the
+        best.
 
         Contacts and shares are those of an endless wall, and their null vector.
         """
@@ -301,12 +306,12 @@ class ToolkitRules:
             if isinstance(contact, WallContact)
         ]
         (one, left), (other, right) = ends
-        columns = [peg.column for _, peg in self.placed(fixture)]
+        columns = [peg.column for _, peg in self.list_placed(fixture)]
         force_at = (one * left + other * right) / (one + other)
-        yield from self.jaw.findings(columns, force_at, met_by(outline, WALL), pose)
+        yield from self.jaw.judge(columns, force_at, select_outline_for(outline, WALL), pose)
 
-    def shared_faces(self, fixture: Fixture, contacts: Sequence[BallContact]) -> list[int]:
-        """Numbers of what the pegs touch: the same for those that an error of a face moves alike.
+    def number_shared_faces(self, fixture: Fixture, contacts: Sequence[BallContact]) -> list[int]:
+        """Return the numbers of what the pegs touch: the same for those that an error of a face moves alike.
 
         A corner on a wall is off by itself.
         """
@@ -316,28 +321,28 @@ class ToolkitRules:
                 out[place] = contact.faces[0] if len(contact.faces) == 1 else -1 - place
         return out
 
-    def hole_findings(self, fixture: Fixture) -> Iterator[Finding]:
-        """What is wrong with the pegs, their holes or lines, and the places x, y written for them."""
-        yield from self.asked_findings(fixture)
+    def judge_holes(self, fixture: Fixture) -> Iterator[Finding]:
+        """Yield what is wrong with the pegs, their holes or lines, and the places x, y written for them."""
+        yield from self.judge_question(fixture)
         yield from self.number_findings(fixture)
-        moved = list(self.travels(fixture).values())
+        moved = list(self.compute_travels(fixture).values())
         for k, (name, peg) in enumerate(zip(self.names, fixture.pegs, strict=False)):
             if peg.is_on_wall:
                 continue
-            if direction_of(peg):
+            if find_direction(peg):
                 yield from self.clamp_place_findings(name, peg)
             travel = moved[1] if len(moved) > 1 and k == len(fixture.pegs) - 1 else moved[0]
-            noun = "line" if direction_of(peg) else "hole"
+            noun = "line" if find_direction(peg) else "hole"
             for axis, written, hole, way in zip(
-                "xy", (peg.x, peg.y), self.place(peg), self.way(peg), strict=True
+                "xy", (peg.x, peg.y), self.place(peg), self.find_way(peg), strict=True
             ):
                 off = abs(hole + arb(travel) * way - written)
                 words = f"the {axis} of {name} is {number(off)} mm from that of its {noun}"
-                yield from rule(AGREEMENT - off, words)
+                yield from judge_slack(AGREEMENT - off, words)
 
-    def asked_findings(self, fixture: Fixture) -> Iterator[Finding]:
-        """Whether a fixture has the pegs of its type in different holes, and directions as asked for."""
-        directions, pegs = directions_of(fixture), fixture.pegs
+    def judge_question(self, fixture: Fixture) -> Iterator[Finding]:
+        """Check whether a fixture has the pegs of its type in different holes, and directions as asked for."""
+        directions, pegs = list_directions(fixture), fixture.pegs
         if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
             first = self.lattices[0]
             count = sum(peg.carrier == first.name for peg in pegs)
@@ -350,7 +355,11 @@ class ToolkitRules:
         if fixture.direction not in [one.direction for one in self.toolkit.arrangements]:
             moves = "its clamp moves" if self.clamps == 1 else "its clamps move"
             yield Finding(True, f"{moves} in {' and '.join(directions)}, which is not asked for")
-        lines = [(list(WAYS).index(direction_of(c)), line_of(c), c.face) for c in pegs if direction_of(c)]
+        lines = [
+            (list(WAYS).index(find_direction(c)), find_clamp_line(c), c.face)
+            for c in pegs
+            if find_direction(c)
+        ]
         if lines != sorted(lines):
             yield Finding(True, "its clamps are not in the order of directions, lines and faces")
         for carrier in self.lattices:
@@ -359,8 +368,8 @@ class ToolkitRules:
                 yield Finding(True, f"two {carrier.peg}s are in the same hole")
 
     def number_findings(self, fixture: Fixture) -> Iterator[Finding]:
-        """Whether there are the columns and rows in which the pegs stand, counted as they are to be."""
-        standing = self.placed(fixture)
+        """Check whether there are the columns and rows in which the pegs stand, counted as they are to be."""
+        standing = self.list_placed(fixture)
         for noun in ("column", "row"):
             numbers = []
             for name, peg in standing:
@@ -378,56 +387,61 @@ class ToolkitRules:
                 yield Finding(True, f"its lowest {noun} is {min(numbers)}, and not 0")
 
     def is_counted(self, peg: Peg, noun: str) -> bool:
-        """Whether a peg's column or row is one of the lattice: without a hole a clamp has its line alone."""
-        return not direction_of(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
+        """Return whether a peg's column or row is one of the lattice: without a hole a clamp has its line alone."""
+        return not find_direction(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
 
     def clamp_place_findings(self, name: str, clamp: Peg) -> Iterator[Finding]:
-        """Whether a clamp is named by its hole, or by its line where it is in none."""
+        """Check whether a clamp is named by its hole, or by its line where it is in none."""
         is_bolted = self.stroke.span is not None
-        place = clamp_place(self.lattices[0].name, direction_of(clamp), clamp.column, clamp.row, is_bolted)
+        place = clamp_place(self.lattices[0].name, find_direction(clamp), clamp.column, clamp.row, is_bolted)
         if clamp.place != place:
             named_by = "hole in which it is bolted" if is_bolted else "line alone, since it has no travel"
             yield Finding(True, f"{name} is not named by the {named_by}")
         if not is_bolted and (clamp.column if is_along_x(clamp) else clamp.row):
             yield Finding(True, f"the place of {name} on its line is not counted from the plate's first hole")
 
-    def standing_findings(
+    def judge_standing(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> Iterator[Finding]:
-        """Whether everything can stand as it does at a proven pose."""
+        """Check whether everything can stand as it does at a proven pose."""
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
         if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]
-            met, said = met_by(outline, WALL), self.pressed(fixture, contacts, pose, outline)
+            met, said = (
+                select_outline_for(outline, WALL),
+                self.find_pressed_contacts(fixture, contacts, pose, outline),
+            )
             written = [end for end in said if isinstance(end, WallContact)]
             yield from flush_findings(self.wall_noun, ends, pose, met, written)
         for jaw in self.lattices:
             if jaw.travel is not None:
-                yield from opening_findings(jaw, pose.travels[0])
+                yield from judge_opening(jaw, pose.travels[0])
                 if self.walls:
                     lowest = min(peg.row for peg in fixture.pegs if peg.carrier == jaw.name)
-                    yield from nearest_row_findings(jaw, lowest, pose.travels[0])
+                    yield from judge_nearest_rows(jaw, lowest, pose.travels[0])
         locators = [(name, contact) for name, peg, contact in named if peg.carrier == self.lattices[0].name]
-        clamps = [(name, peg, contact) for name, peg, contact in named if direction_of(peg)]
+        clamps = [(name, peg, contact) for name, peg, contact in named if find_direction(peg)]
         for name, peg, clamp in clamps:
-            met = met_by(outline, peg.carrier)
-            yield from self.stroke.findings(name, locators, clamp, pose, met)
+            met = select_outline_for(outline, peg.carrier)
+            yield from self.stroke.judge(name, locators, clamp, pose, met)
         if len(clamps) > 1:
-            yield from self.stroke.apart_findings(clamps[0][2], clamps[1][2], pose)
+            yield from self.stroke.judge_clearance_between(clamps[0][2], clamps[1][2], pose)
         elif self.stroke.span is not None:
             ((name, peg, _),) = clamps
             noun, axis = ("column", 0) if is_along_x(peg) else ("row", 1)
             numbers = [getattr(one, noun) for one in fixture.pegs if one.carrier == self.lattices[0].name]
-            if self.fits(noun, [*numbers, getattr(peg, noun) - round(self.way(peg)[axis])]):
-                yield from self.stroke.nearer_findings(name, -pose.travels[0], self.lattices[0].pitch[axis])
+            if self.fits(noun, [*numbers, getattr(peg, noun) - round(self.find_way(peg)[axis])]):
+                yield from self.stroke.judge_nearest_hole(
+                    name, -pose.travels[0], self.lattices[0].pitch[axis]
+                )
 
     def fits(self, noun: str, numbers: Sequence[int]) -> bool:
-        """Whether what stands still has columns or rows of such numbers, however it is shifted."""
+        """Return whether what stands still has columns or rows of such numbers, however it is shifted."""
         count, lowest = getattr(self.lattices[0], f"{noun}s"), min(numbers) if noun in self.from_lowest else 0
         return min(numbers) >= lowest and (count is None or max(numbers) - lowest < count)
 
-    def crowding(self, fixture: Fixture) -> str:
-        """What stands in a blocked hole or overlaps as it is written, in one sentence without a full stop."""
+    def find_crowding(self, fixture: Fixture) -> str:
+        """Return what stands in a blocked hole or overlaps as it is written, in one sentence without a full stop."""
         pegs = [(peg, self.carriers[peg.carrier]) for peg in fixture.pegs]
         for name, (peg, carrier) in zip(self.names, pegs, strict=True):
             blocked = [holes for holes in carrier.blocked if holes.column == peg.column]

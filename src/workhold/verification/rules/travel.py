@@ -20,7 +20,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from attrs import evolve, frozen
 from flint import arb
 
-from workhold.fixels.carrier import column_letters, hole_name
+from workhold.fixels.carrier import make_column_letters, make_hole_name
 from workhold.fixels.toolkit import Carrier
 from workhold.model.fixture import Fixture, Peg
 from workhold.verification.ball_geometry import (
@@ -29,53 +29,54 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
+    compute_dot_product,
+    compute_norm,
+    compute_square_root,
     cross,
-    dot,
-    exact_point,
-    line_side,
-    norm,
-    root,
+    make_exact_point,
+    make_line_side,
 )
 from workhold.verification.contacts import BallContact, BallPose
-from workhold.verification.tolerances import BODY_SLACK, HAIR, Finding, number, rule
+from workhold.verification.tolerances import BODY_SLACK, HAIR, Finding, judge_slack, number
 
 __all__ = [
     "OPPOSITE",
     "WAYS",
     "Stroke",
     "clamp_place",
-    "direction_of",
-    "directions_of",
+    "find_direction",
+    "list_directions",
     "is_along_x",
-    "line_of",
-    "nearest_row_findings",
-    "opening_findings",
-    "pieces_apart",
-    "quarter_turns",
-    "seen_along_x",
-    "travelled",
+    "find_clamp_line",
+    "judge_nearest_rows",
+    "judge_opening",
+    "measure_piece_distance",
+    "count_quarter_turns",
+    "turn_hole_back",
+    "measure_travel",
 ]
 
 
-def opening_findings(jaw: Carrier, separation: arb) -> Iterator[Finding]:
-    """Whether a jaw can stand at a proven separation, in mm; met to a hair (see ``tolerances``)."""
+def judge_opening(jaw: Carrier, separation: arb) -> Iterator[Finding]:
+    """Check whether a jaw can stand at a proven separation, in mm; met to a hair (see ``tolerances``)."""
     assert jaw.travel is not None
     gap, limit = jaw.travel.least, jaw.travel.most
-    yield from rule(
+    yield from judge_slack(
         separation - gap + HAIR,
         f"the opening of {number(separation)} mm is below the smallest gap of {gap:g} mm",
         "the opening is exactly at the edge of the smallest gap",
     )
     if limit is not None:
-        yield from rule(
+        yield from judge_slack(
             limit - separation + HAIR,
             f"the opening of {number(separation)} mm is above the largest opening of {limit:g} mm",
             "the opening is exactly at the edge of the largest opening",
         )
 
 
-def nearest_row_findings(jaw: Carrier, lowest: int, separation: arb) -> Iterator[Finding]:
-    """Whether a jaw that slides along its rows has its pegs in the nearest ones that the opening allows.
+def judge_nearest_rows(jaw: Carrier, lowest: int, separation: arb) -> Iterator[Finding]:
+    """Check whether a jaw that slides along its rows has its pegs in the nearest ones that the opening
+    allows.
 
     ``lowest`` is the first row in use. One row nearer, the jaw is one pitch farther from the wall.
     """
@@ -86,7 +87,7 @@ def nearest_row_findings(jaw: Carrier, lowest: int, separation: arb) -> Iterator
         if limit is None:
             yield Finding(True, words)
         else:
-            yield from rule(
+            yield from judge_slack(
                 wider - limit - HAIR, words, "one row nearer the opening would be exactly at its edge"
             )
 
@@ -97,44 +98,46 @@ WAYS = {"-x": (1, 0), "+x": (-1, 0), "-y": (0, 1), "+y": (0, -1)}
 OPPOSITE = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
-def directions_of(fixture: Fixture) -> tuple[str, ...]:
+def list_directions(fixture: Fixture) -> tuple[str, ...]:
     return tuple((fixture.direction or "").split())
 
 
-def direction_of(clamp: Peg) -> str:
-    """The direction in which a clamp moves when it clamps; that of no clamp is empty."""
+def find_direction(clamp: Peg) -> str:
+    """Return the direction in which a clamp moves when it clamps; that of no clamp is empty."""
     direction = clamp.carrier.rpartition(" ")[2]
     return direction if direction in WAYS else ""
 
 
 def is_along_x(clamp: Peg) -> bool:
-    return direction_of(clamp).endswith("x")
+    return find_direction(clamp).endswith("x")
 
 
-def line_of(clamp: Peg) -> int:
-    """The number of the row or column along which a clamp moves."""
+def find_clamp_line(clamp: Peg) -> int:
+    """Return the number of the row or column along which a clamp moves."""
     return clamp.row if is_along_x(clamp) else clamp.column
 
 
-def quarter_turns(direction: str) -> int:
-    """How many quarter turns, counter-clockwise, make -x of the plate the direction of a clamp."""
+def count_quarter_turns(direction: str) -> int:
+    """Return how many quarter turns, counter-clockwise, make -x of the plate the direction of a clamp."""
     return ("-x", "-y", "+x", "+y").index(direction)
 
 
-def seen_along_x(turns: int, column: int, row: int) -> tuple[int, int]:
-    """Column and row of a hole on the plate turned back by so many quarter turns."""
+def turn_hole_back(turns: int, column: int, row: int) -> tuple[int, int]:
+    """Return the column and row of a hole on the plate turned back by so many quarter turns."""
     return ((column, row), (row, -column), (-column, -row), (-row, column))[turns]
 
 
 def clamp_place(on: str, direction: str, column: int, row: int, is_bolted: bool) -> str:
-    """What the place of a clamp on a carrier is called: by its hole, or by its line where it is in none."""
+    """Return what the place of a clamp on a carrier is called: by its hole, or by its line where it is in none."""
     if is_bolted:
-        return f"clamp {hole_name(on, column, row)}"
-    return f"clamp row {row + 1}" if direction.endswith("x") else f"clamp column {column_letters(column)}"
+        return f"clamp {make_hole_name(on, column, row)}"
+    return (
+        f"clamp row {row + 1}" if direction.endswith("x") else f"clamp column {make_column_letters(column)}"
+    )
 
 
-def travelled(peg: Peg, carrier: Carrier) -> float:
-    """How far in mm a peg has travelled on its carrier from its hole to where it is written."""
+def measure_travel(peg: Peg, carrier: Carrier) -> float:
+    """Return how far in mm a peg has travelled on its carrier from its hole to where it is written."""
     (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
     along, across = (0.0, 0.0) if carrier.travel is None else carrier.travel.unit
     return (peg.x - x - peg.column * pitch_x) * along + (peg.y - y - peg.row * pitch_y) * across
@@ -153,7 +156,7 @@ class Stroke:
     span: tuple[float, float] | None
     wall: str
 
-    def findings(
+    def judge(
         self,
         name: str,
         locators: Sequence[tuple[str, BallContact]],
@@ -161,19 +164,21 @@ class Stroke:
         pose: BallPose,
         outline: BallOutline,
     ) -> Iterator[Finding]:
-        """Whether a clamp, bolted in its hole, reaches its place and clears wall, locators and part."""
+        """Check whether a clamp, bolted in its hole, reaches its place and clears wall, locators and part."""
         tip, stroke = clamp.place(pose), -pose.travels[clamp.travel]
         if self.wall:
             above = tip[1] - clamp.radius
             words = f"{name} enters the {self.wall} by {number(-above)} mm"
             at = f"{name} touches the {self.wall} exactly at the edge of what is allowed"
-            yield from rule(above + HAIR, words, at)
+            yield from judge_slack(above + HAIR, words, at)
         hole = tip if self.span is None else clamp.hole
         for other, locator in locators:
             apart = (
-                pieces_apart((locator.hole, locator.hole), (tip, hole)) - locator.clear_radius - clamp.radius
+                measure_piece_distance((locator.hole, locator.hole), (tip, hole))
+                - locator.clear_radius
+                - clamp.radius
             )
-            yield from rule(
+            yield from judge_slack(
                 apart + HAIR,
                 f"{name} meets {other}: they overlap by {number(-apart)} mm",
                 f"{name} touches {other} exactly at the edge of what is allowed",
@@ -181,76 +186,84 @@ class Stroke:
         if self.span is None:
             return
         least, most = self.span
-        yield from rule(
+        yield from judge_slack(
             stroke - least + HAIR,
             f"{name} is bolted {number(stroke)} mm behind its tip, nearer than the {least:g} mm of its "
             "stroke",
             f"{name} is bolted exactly at the edge of the least of its stroke",
         )
-        yield from rule(
+        yield from judge_slack(
             most - stroke + HAIR,
             f"{name} is bolted {number(stroke)} mm behind its tip, beyond the {most:g} mm of its stroke",
             f"{name} is bolted exactly at the edge of the most of its stroke",
         )
         if stroke > 0:
-            start, end = clamp.in_part(pose), evolve(clamp, way=exact_point(0.0, 0.0)).in_part(pose)
-            clear = clearance(start, end, clamp.radius, outline.segments, enough=1.0)
-            yield from rule(
+            start, end = (
+                clamp.compute_center_in_part(pose),
+                evolve(clamp, way=make_exact_point(0.0, 0.0)).compute_center_in_part(pose),
+            )
+            clear = compute_capsule_clearance(start, end, clamp.radius, outline.segments, enough=1.0)
+            yield from judge_slack(
                 clear + BODY_SLACK,
                 f"{name} enters the workpiece between its hole and its tip by {number(-clear)} mm",
                 f"{name} touches the workpiece between its hole and its tip exactly at the edge of what is "
                 "allowed",
             )
 
-    def nearer_findings(self, name: str, stroke: arb, pitch: float) -> Iterator[Finding]:
-        """Whether a clamp is bolted in the nearest hole, where there is one nearer by a pitch in mm."""
+    def judge_nearest_hole(self, name: str, stroke: arb, pitch: float) -> Iterator[Finding]:
+        """Check whether a clamp is bolted in the nearest hole, where there is one nearer by a pitch in mm."""
         assert self.span is not None
-        yield from rule(
+        yield from judge_slack(
             self.span[0] - HAIR - (stroke - pitch),
             f"{name} could be bolted one hole nearer, {number(stroke - pitch)} mm behind its tip",
             f"one hole nearer {name} would be bolted exactly at the edge of the least of its stroke",
         )
 
-    def apart_findings(self, one: BallContact, other: BallContact, pose: BallPose) -> Iterator[Finding]:
-        """Whether two clamps, from their holes to their tips, keep clear of each other."""
+    def judge_clearance_between(
+        self, one: BallContact, other: BallContact, pose: BallPose
+    ) -> Iterator[Finding]:
+        """Check whether two clamps, from their holes to their tips, keep clear of each other."""
         tips = one.place(pose), other.place(pose)
         holes = tips if self.span is None else (one.hole, other.hole)
-        apart = pieces_apart(*zip(tips, holes, strict=True)) - one.radius - other.radius
-        yield from rule(
+        apart = measure_piece_distance(*zip(tips, holes, strict=True)) - one.radius - other.radius
+        yield from judge_slack(
             apart + HAIR,
             f"the clamps meet: they overlap by {number(-apart)} mm",
             "the clamps touch exactly at the edge of what is allowed",
         )
 
 
-def pieces_apart(one: tuple[Point, Point], other: tuple[Point, Point]) -> arb:
-    """Distance in mm of two straight pieces, each along x or y."""
+def measure_piece_distance(one: tuple[Point, Point], other: tuple[Point, Point]) -> arb:
+    """Return the distance in mm of two straight pieces, each along x or y."""
     beyond = []
     for a, b, c, d in zip(*one, *other, strict=True):
         beyond.append(arb(0).max(a.min(b) - c.max(d)).max(c.min(d) - a.max(b)))
-    return norm((beyond[0], beyond[1]))
+    return compute_norm((beyond[0], beyond[1]))
 
 
-def clearance(start: Point, end: Point, radius: arb, sides: Iterable[Side], enough: float) -> arb:
-    """Distance in mm from a capsule to the nearest of some sides, negative inside, at most ``enough``.
+def compute_capsule_clearance(
+    start: Point, end: Point, radius: arb, sides: Iterable[Side], enough: float
+) -> arb:
+    """Return the distance in mm from a capsule to the nearest of some sides, negative inside, at most
+    ``enough``.
 
     The ends of the capsule's middle line are apart.
     """
-    piece = line_side(start, end)
+    piece = make_line_side(start, end)
     middle = (start[0] + end[0]) / 2, (start[1] + end[1]) / 2
     nearest = arb(enough)
     for side in sides:
-        if side.distance(middle) - piece.length / 2 - radius > enough:
+        if side.compute_distance(middle) - piece.length / 2 - radius > enough:
             continue
-        nearest = nearest.min(piece_distance(piece, side) - radius)
+        nearest = nearest.min(compute_piece_distance(piece, side) - radius)
     return nearest
 
 
-def piece_distance(piece: LineSide, side: Side) -> arb:
-    """Distance in mm between a straight piece and a side."""
-    nearest = side.distance(piece.start).min(side.distance(piece.end))
-    nearest = nearest.min(piece.distance(side.start)).min(piece.distance(side.end))
-    for place, distance in between(piece, side):
+def compute_piece_distance(piece: LineSide, side: Side) -> arb:
+    """Return the distance in mm between a straight piece and a side."""
+    nearest = side.compute_distance(piece.start).min(side.compute_distance(piece.end))
+    nearest = nearest.min(piece.compute_distance(side.start)).min(piece.compute_distance(side.end))
+    for place, distance in find_nearest_places(piece, side):
         outside = place < 0 or place > piece.length
         inside = place > 0 and place < piece.length
         if not outside:
@@ -258,21 +271,21 @@ def piece_distance(piece: LineSide, side: Side) -> arb:
     return nearest
 
 
-def between(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
-    """Places in mm along a piece's line where it may be nearest to a side, with the distance there."""
+def find_nearest_places(piece: LineSide, side: Side) -> Iterator[tuple[arb, arb]]:
+    """Yield the places in mm along a piece's line where it may be nearest to a side, with the distance there."""
     if isinstance(side, ArcSide):
         ray = side.from_center(piece.start)
-        foot, off = -dot(ray, piece.tangent), cross(ray, piece.tangent)
+        foot, off = -compute_dot_product(ray, piece.tangent), cross(ray, piece.tangent)
         square = side.radius * side.radius - off * off
-        half = arb(0) if square < 0 else root(square)
+        half = arb(0) if square < 0 else compute_square_root(square)
         for place in (foot - half, foot + half):
-            yield place, side.distance(along(piece, place))
+            yield place, side.compute_distance(find_point_along(piece, place))
         return
     slope = cross(piece.tangent, side.tangent)
     if slope > 0 or slope < 0:
         place = cross((side.start[0] - piece.start[0], side.start[1] - piece.start[1]), side.tangent) / slope
-        yield place, side.distance(along(piece, place))
+        yield place, side.compute_distance(find_point_along(piece, place))
 
 
-def along(piece: LineSide, place: arb) -> Point:
+def find_point_along(piece: LineSide, place: arb) -> Point:
     return piece.start[0] + place * piece.tangent[0], piece.start[1] + place * piece.tangent[1]

@@ -25,9 +25,9 @@ from workhold.verification.ball_geometry import (
     LineSide,
     Point,
     Side,
-    exact_point,
-    norm,
-    turned,
+    compute_norm,
+    make_exact_point,
+    turn_vector,
 )
 from workhold.verification.contacts import BallContact, BallPose
 from workhold.verification.tolerances import (
@@ -38,11 +38,11 @@ from workhold.verification.tolerances import (
     SAME,
     SPARE,
     Finding,
+    judge_slack,
     number,
-    rule,
 )
 
-__all__ = ["Jaw", "WallContact", "flush_findings", "wall_contacts"]
+__all__ = ["Jaw", "WallContact", "flush_findings", "make_wall_contacts"]
 
 
 @frozen(eq=False)
@@ -59,9 +59,9 @@ class Support:
     bow: arb
     faces: tuple[int, ...]
 
-    def lowest(self, pose: BallPose) -> Point:
-        """The lowest point in the toolkit's frame, in mm."""
-        x, y = turned(self.center, pose.cosine, pose.sine)
+    def find_lowest_point(self, pose: BallPose) -> Point:
+        """Return the lowest point in the toolkit's frame, in mm."""
+        x, y = turn_vector(self.center, pose.cosine, pose.sine)
         return x + pose.x, y + pose.y - self.bow
 
 
@@ -87,50 +87,50 @@ class WallContact(BallContact):
         """How long the part lies on the wall."""
         return self.length
 
-    def outward(self, pose: BallPose) -> Point:
-        """The direction down, as the workpiece sees it."""
+    def compute_outward_normal(self, pose: BallPose) -> Point:
+        """Return the direction down, as the workpiece sees it."""
         return -pose.sine, -pose.cosine
 
-    def in_part(self, pose: BallPose) -> Point:
-        """The point that touches, in the workpiece's frame."""
-        (x, y), (across, down) = self.piece.center, self.outward(pose)
+    def compute_center_in_part(self, pose: BallPose) -> Point:
+        """Return the point that touches, in the workpiece's frame."""
+        (x, y), (across, down) = self.piece.center, self.compute_outward_normal(pose)
         return x + self.piece.bow * across, y + self.piece.bow * down
 
     def place(self, pose: BallPose) -> Point:
-        """The point that touches, in the toolkit's frame."""
-        return self.piece.lowest(pose)
+        """Return the point that touches, in the toolkit's frame."""
+        return self.piece.find_lowest_point(pose)
 
-    def equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
-        """How high its lowest point is, and the derivatives of that by theta, x, y and travel."""
-        x, y = self.piece.lowest(pose)
+    def evaluate_equation(self, pose: BallPose) -> tuple[arb, list[arb]]:
+        """Return how high its lowest point is, and the derivatives of that by theta, x, y and travel."""
+        x, y = self.piece.find_lowest_point(pose)
         return y, [x - pose.x, arb(0), arb(1), arb(0)]
 
 
-def wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
-    """The two ends of the contact with a wall at a pose, from left to right, each on a side."""
+def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
+    """Return the two ends of the contact with a wall at a pose, from left to right, each on a side."""
     lows = [
         (float(y.mid()), float(x.mid()), piece)
-        for piece in pieces(outline, pose)
-        for x, y in (piece.lowest(pose),)
+        for piece in list_supports(outline, pose)
+        for x, y in (piece.find_lowest_point(pose),)
     ]
     lows.sort(key=lambda low: low[0])
     flat = [low for low in lows if abs(low[0]) <= 10 * AGREEMENT] or lows[:2]
     left, right = (end_at([(sign * x, piece) for _, x, piece in flat]) for sign in (1, -1))
     # A common tangent of two circles, or of joints.
-    far = norm((right.center[0] - left.center[0], right.center[1] - left.center[1]))
+    far = compute_norm((right.center[0] - left.center[0], right.center[1] - left.center[1]))
     square = far * far - (left.bow - right.bow) * (left.bow - right.bow)
-    length, here = square.sqrt() if square > 0 else arb(0), exact_point(0.0, 0.0)
+    length, here = square.sqrt() if square > 0 else arb(0), make_exact_point(0.0, 0.0)
     return [
-        WallContact(here, here, side, arb(0), end, along_wall(end, outline, pose), length)
+        WallContact(here, here, side, arb(0), end, find_touching_numbers(end, outline, pose), length)
         for side, end in zip(sides, (left, right), strict=True)
     ]
 
 
-def pieces(outline: BallOutline, pose: BallPose) -> Iterator[Support]:
-    """Joints of an outline, and convex arcs that run along x at their lowest point."""
+def list_supports(outline: BallOutline, pose: BallPose) -> Iterator[Support]:
+    """Yield the joints of an outline, and convex arcs that run along x at their lowest point."""
     down = -pose.sine, -pose.cosine
     for face, side in outline.faces.items():
-        if isinstance(side, ArcSide) and side.sign > 0 and (side.whole or not side.within(down) < 0):
+        if isinstance(side, ArcSide) and side.sign > 0 and (side.whole or not side.measure_within(down) < 0):
             yield Support(side.center, side.radius, (face,))
     before = {(float(side.end[0]), float(side.end[1])): face for face, side in outline.faces.items()}
     for face, side in outline.faces.items():
@@ -140,18 +140,20 @@ def pieces(outline: BallOutline, pose: BallPose) -> Iterator[Support]:
 
 
 def end_at(flat: Sequence[tuple[float, Support]]) -> Support:
-    """The piece at the least of some places: of an arc and the joint that it ends in the joint."""
+    """Return the piece at the least of some places: of an arc and the joint that it ends in the joint."""
     least = min(place for place, _ in flat)
     near = [low for low in flat if low[0] <= least + AGREEMENT]
     return min(near, key=lambda low: (float(low[1].bow.mid()), low[0]))[1]
 
 
-def along_wall(end: Support, outline: BallOutline, pose: BallPose) -> tuple[int, ...]:
-    """The numbers of what touches: of a joint the face that lies along the wall, where one does."""
+def find_touching_numbers(end: Support, outline: BallOutline, pose: BallPose) -> tuple[int, ...]:
+    """Return the numbers of what touches: of a joint the face that lies along the wall, where one does."""
     for face in end.faces:
         side = outline.faces[face]
         if isinstance(side, LineSide):
-            heights = [turned(point, pose.cosine, pose.sine)[1] + pose.y for point in (side.start, side.end)]
+            heights = [
+                turn_vector(point, pose.cosine, pose.sine)[1] + pose.y for point in (side.start, side.end)
+            ]
             if all(abs(float(height.mid())) <= 3 * FLUSH for height in heights):
                 return (face,)
     return end.faces
@@ -199,12 +201,12 @@ class Jaw:
         """x of its middle in mm."""
         return arb(self.columns - 1) * self.pitch / 2
 
-    def stretch(self, outline: BallOutline, pose: BallPose, shift: arb) -> Stretch | None:
-        """What a part has in common with the jaw once it is shifted along x in mm; None for nothing."""
+    def find_common_stretch(self, outline: BallOutline, pose: BallPose, shift: arb) -> Stretch | None:
+        """Return what a part has in common with the jaw once it is shifted along x in mm; None for nothing."""
         first, last = self.middle - arb(self.width) / 2 - shift, self.middle + arb(self.width) / 2 - shift
         lefts: list[tuple[arb, int, tuple[int, ...]]] = []
         rights: list[tuple[arb, int, tuple[int, ...]]] = []
-        for low, high, faces in on_line(outline, pose):
+        for low, high, faces in find_stretches_on_line(outline, pose):
             if float((low - last).mid()) > HAIR or float((first - high).mid()) > HAIR:
                 continue
             # What lies along the jaw comes before a joint, and that before an arc.
@@ -222,31 +224,31 @@ class Jaw:
         )
         return Stretch(left[0] + shift, right[0] + shift, (first_faces, last_faces))
 
-    def contacts(
+    def limit_contacts(
         self, ends: Sequence[WallContact], outline: BallOutline, pose: BallPose
     ) -> list[WallContact]:
-        """The ends of the common stretch at a pose instead of those of the whole contact; these if none."""
-        found = self.stretch(outline, pose, arb(0))
+        """Return the ends of the common stretch at a pose instead of those of the whole contact; these if none."""
+        found = self.find_common_stretch(outline, pose, arb(0))
         if found is None:
             return [*ends]
         out = []
         for end, x, faces in zip(ends, (found.left, found.right), found.faces, strict=True):
-            point = turned((x - pose.x, -pose.y), pose.cosine, -pose.sine)
+            point = turn_vector((x - pose.x, -pose.y), pose.cosine, -pose.sine)
             piece = Support(point, arb(0), faces)
             out.append(evolve(end, piece=piece, faces=faces, length=found.length))
         return out
 
-    def findings(
+    def judge(
         self, columns: Sequence[int], force_at: arb, outline: BallOutline, pose: BallPose
     ) -> Iterator[Finding]:
-        """Whether the jaw holds the part where its force acts, and no other columns do so better.
+        """Check whether the jaw holds the part where its force acts, and no other columns do so better.
 
         The pegs stand in ``columns``, and the force of the wall acts at ``force_at``, x in mm.
         """
         first, found = min(columns), dict[int, tuple[Stretch, arb]]()
         for column in range(self.columns - (max(columns) - first)):
             shift = arb(column - first) * self.pitch
-            stretch = self.stretch(outline, pose, shift)
+            stretch = self.find_common_stretch(outline, pose, shift)
             if stretch is not None:
                 at = force_at + shift
                 found[column] = stretch, (at - stretch.left).min(stretch.right - at)
@@ -255,7 +257,7 @@ class Jaw:
             return
         own, inside = found[first]
         if not -SPARE < inside - SAME < SPARE:
-            yield from rule(
+            yield from judge_slack(
                 inside - SAME,
                 f"the force of the {self.noun} acts {number(-inside)} mm beyond where both touch",
             )
@@ -282,16 +284,18 @@ class Jaw:
                 return
 
 
-def on_line(outline: BallOutline, pose: BallPose) -> Iterator[tuple[arb, arb, tuple[int, ...]]]:
-    """The x in mm between which a part touches the line of a wall, and the numbers of what touches."""
+def find_stretches_on_line(
+    outline: BallOutline, pose: BallPose
+) -> Iterator[tuple[arb, arb, tuple[int, ...]]]:
+    """Yield the x in mm between which a part touches the line of a wall, and the numbers of what touches."""
     for face, side in outline.faces.items():
         if isinstance(side, LineSide):
-            ends = [turned(point, pose.cosine, pose.sine) for point in (side.start, side.end)]
+            ends = [turn_vector(point, pose.cosine, pose.sine) for point in (side.start, side.end)]
             if all(abs(float((y + pose.y).mid())) <= 3 * FLUSH for _, y in ends):
                 low, high = sorted((x + pose.x for x, _ in ends), key=lambda x: float(x.mid()))
                 yield low, high, (face,)
-    for piece in pieces(outline, pose):
-        x, y = piece.lowest(pose)
+    for piece in list_supports(outline, pose):
+        x, y = piece.find_lowest_point(pose)
         if abs(float(y.mid())) <= 3 * FLUSH:
             yield x, x, piece.faces
 
@@ -303,16 +307,18 @@ def flush_findings(
     outline: BallOutline,
     stated: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
-    """Whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
+    """Check whether the part lies flush on a wall called ``noun``, its two named ends where they are written.
 
     ``ends`` are those of the whole contact, ``stated`` those that the file says: the ends of what the wall
     reaches of it, the same if None.
     """
     (left, _), (right, _) = [contact.place(pose) for _, _, contact in ends]
-    yield from rule(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
-    for piece in pieces(outline, pose):
-        (x, low), face = piece.lowest(pose), piece.faces[0]
-        yield from rule(low + 2 * FLUSH, f"the part enters the {noun} at face {face} by {number(-low)} mm")
+    yield from judge_slack(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
+    for piece in list_supports(outline, pose):
+        (x, low), face = piece.find_lowest_point(pose), piece.faces[0]
+        yield from judge_slack(
+            low + 2 * FLUSH, f"the part enters the {noun} at face {face} by {number(-low)} mm"
+        )
         beyond = (left - x).max(x - right) - 2 * FLUSH
         if not (low > FLUSH / 2 or beyond < 0):
             words = f"the part lies on the {noun} at face {face}, beyond its stated ends"
@@ -326,4 +332,4 @@ def flush_findings(
             off = abs(derived - written)
             if not isnan(written) and not off < AGREEMENT:
                 words = f"the {axis} of {name} is {number(off)} mm from where the part touches"
-                yield from rule(AGREEMENT - off, words)
+                yield from judge_slack(AGREEMENT - off, words)
