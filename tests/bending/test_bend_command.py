@@ -106,3 +106,28 @@ def test_a_table_says_it_in_words(result_file: str) -> None:
 def test_what_cannot_be_is_refused_in_a_sentence(result_file: str, words: list[str], said: str) -> None:
     outcome = run(result_file, *words)
     assert outcome.exit_code == 2 and said in outcome.stderr
+
+
+def test_the_sheet_has_a_page_of_it(result_file: str, tmp_path: Path) -> None:
+    sheets = [tmp_path / "bare.svg", tmp_path / "bent.svg"]
+    common = [
+        "sheet",
+        result_file,
+        "1",
+        "--thickness",
+        "8",
+        "--jaw-force",
+        "3000",
+        "--date",
+        "2026-01-01",
+        "-o",
+    ]
+    bending = [[], ["--material", "aluminium-6061", "--bend", "0.001mm"]]
+    for path, more in zip(sheets, bending, strict=True):
+        outcome = CliRunner().invoke(app, [*common, str(path), *more])
+        assert outcome.exit_code == 0, outcome.stderr
+    bare, bent = (path.read_text() for path in sheets)
+    assert "How clamping bends the part" in bent and "How clamping bends" not in bare
+    assert "times as far as it is." in bent and "µm" in bent and "Beware: Clamping bends" in bent
+    outcome = CliRunner().invoke(app, [*common, str(tmp_path / "x.svg"), "--part", "part.step"])
+    assert outcome.exit_code == 2 and "give --material" in outcome.stderr

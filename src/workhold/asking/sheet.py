@@ -35,6 +35,8 @@ class SheetQuestion:
     thickness : of the part.
     peg_length, peg_height : of the pegs, and how far they stand out of the jaws.
     dowel : what the pegs are and how they fit their holes, in words.
+    material : what the part is of, to show how far clamping bends it; None where the sheet does not show it.
+    bend : beyond which the sheet warns of a part that bends or gives.
     clearance : how far the cutter is to keep off the pegs.
     plate_thickness : of the plates that pegs stand through.
     support_height : of supports under the part.
@@ -110,6 +112,20 @@ class SheetQuestion:
         PageLabel("Dowel and fit", "6 mm m6 in H7"),
         section=BODIES,
         typed="Dowels and their fit, such as '6 mm m6 in H7'; those of --vise if not given.",
+    )
+    material: str | None = declare(
+        "text",
+        "What the part is of, such as aluminium-6061 or mild-steel: the sheet then shows how far clamping "
+        "bends it. This takes the extra bending, and some seconds.",
+        PageLabel("Material, to see it bend", "not bent"),
+        section=BODIES,
+        metavar="NAME",
+    )
+    bend: float | None = declare(
+        "length",
+        "Warn of a part that clamping bends by more, or that gives by more at the cutter.",
+        PageLabel("Warn of bending above", "no warning"),
+        section=BODIES,
     )
     clearance: float | None = declare(
         "length",

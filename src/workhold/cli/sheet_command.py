@@ -23,7 +23,12 @@ from workhold.cli.declared import (
 from workhold.cli.options import SHOWN_UNIT, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_written, refuse_output
 from workhold.cli.search_options import LOAD, LOADS_FILE, read_asked_loads
-from workhold.cli.setup_sheets import choose_best_supports, choose_supports_from_file, find_first_side
+from workhold.cli.setup_sheets import (
+    PART_FILE,
+    choose_best_supports,
+    choose_supports_from_file,
+    find_first_side,
+)
 from workhold.cli.values import choose_printed_unit, read_unit
 from workhold.errors import InputError
 
@@ -51,6 +56,7 @@ FIRST_SETUP = make_option(
 @frozen(
     these=make_option_attributes(
         OF_SHEET,
+        clearance={"part": make_word_attribute(PART_FILE)},
         support_height={"supports": make_flag_attribute(WITH_SUPPORTS)},
         seating={"first_setup": make_word_attribute(FIRST_SETUP)},
         jaw_force={"load": make_list_attribute(LOAD), "loads": make_word_attribute(LOADS_FILE)},
@@ -63,6 +69,8 @@ class SheetWords:
         support_height: str | None
         supports: bool
         first_setup: str | None
+        part: str | None
+        material: str | None
         seating: bool
         load: list[str] | None
         loads: str | None
@@ -138,7 +146,7 @@ def sheet(
     Example: workhold sheet part.json 1 -o setup.pdf --jaw-force 3000
     """
     asked = parse(result_file, read_rank(number), Path(out), words, unit)
-    refuse_output(asked.path, (result_file, words.loads, words.first_setup), force)
+    refuse_output(asked.path, (result_file, words.loads, words.first_setup, words.part), force)
     write(asked)
     print_written(json_, f"Written to {asked.path}.", asked.path)
 
@@ -161,6 +169,11 @@ def parse(result_file: str, rank: int, path: Path, words: SheetWords, unit: str 
     settings["jaw"] = jaw_stiffness(settings["jaw"])
     settings["day"] = settings["day"] or date.today()
     given = read_asked_loads(words.load, words.loads, shown)
+    if words.part is not None and ending not in STEP_ENDINGS and words.material is None:
+        raise InputError(
+            "--part is for the part's shape in a .step, and for how far it bends: give --material, or leave it "
+            "out."
+        )
     on_supports = is_supports_file(result_file)
     for_cam = ending in MODEL_ENDINGS
     has_room = not for_cam or ending in STEP_ENDINGS
@@ -175,6 +188,10 @@ def write(asked: SheetTask) -> None:
 
     result, rank, beside, loads = read_sheet_content(asked)
     settings, words = asked.settings | beside, asked.words
+    if words.part is not None:
+        from workhold.presenting.assembly import read_part_shape
+
+        settings["shape"] = read_part_shape(words.part, result.workpiece)
     if words.first_setup is not None:
         settings["first_side"] = find_first_side(result, rank, words.first_setup)
     if words.seating and result[rank - 1].seating is None and result.toolkit.closes_at_once:

@@ -16,7 +16,14 @@ from workhold.bending.figures import Bending
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit, Scene, measure_text
 
-__all__ = ["LARGEST_SHOWN", "colours_of", "draw_bent_part", "exaggeration_of", "picture_of_bending"]
+__all__ = [
+    "LARGEST_SHOWN",
+    "colours_of",
+    "draw_bent_page",
+    "draw_bent_part",
+    "exaggeration_of",
+    "picture_of_bending",
+]
 
 Array = NDArray[np.float64]
 # Of the part's size, the largest movement as it is drawn.
@@ -133,6 +140,21 @@ def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, ti
     said = f"Bent {times:,.0f} times as far as it is." if times > 1 else "Bent as far as it is."
     scene.add_text((box.x0 + width + 40, box.y0 + 8), said, 10, bold=True)
     scene.add_text((box.x0 + width + 40, box.y0 + 20), "Ring: most. Grey: pressed, not counted.", 9)
+
+
+def draw_bent_page(
+    scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, words: Sequence[str]
+) -> None:
+    """Fill a page of a setup sheet: what bends in a picture, and sentences above it."""
+    column = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
+    column.write_paragraph("How clamping bends the part", 16, bold=True)
+    column.y += 6.0
+    material = (
+        f"Reckoned for {bending.material.words}; the part is finished, and contacts neither slip nor let go."
+    )
+    for sentence in (*words, material):
+        column.write_paragraph(sentence, 12)
+    draw_bent_part(scene, Box(box.x0, column.y + 16.0, box.x1, box.y1 - 10.0), bending, lengths)
 
 
 def picture_of_bending(bending: Bending, title: str, lengths: LengthUnit, words: Sequence[str]) -> str:

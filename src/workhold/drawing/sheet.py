@@ -24,6 +24,7 @@ from attrs import evolve, frozen
 
 from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import Bench, make_bench
+from workhold.drawing.bent_part import draw_bent_page
 from workhold.drawing.carriers import limit_holes_drawn
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.path_drawn import PlannedPath
@@ -119,6 +120,13 @@ def draw_sheet(
     if figure is not None and layout.figure is not None:
         box, scale = layout.figure
         figure.draw(pages[1], box, scale.name, scale.factor)
+    if details.bending is not None:
+        pages.append(Scene.make_page(layout.page, title))
+        room = Box(MARGIN, MARGIN, layout.page[0] - MARGIN, layout.page[1] - MARGIN - FOOT)
+        mover = toolkit.moving.noun
+        said = details.bending.list_sentences(mover, details.unit)
+        said += [f"Beware: {one}" for one in details.bending.list_warnings(details.bend, details.unit)]
+        draw_bent_page(pages[-1], room, details.bending, lengths, said)
     for number, page in enumerate(pages, 1):
         draw_foot(page, layout, sheet, f"{number} of {len(pages)}")
     return tuple(page.to_svg() for page in pages)

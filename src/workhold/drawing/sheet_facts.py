@@ -13,6 +13,7 @@ from typing import Any
 from attrs import evolve, field, frozen
 
 from workhold.asking.sheet import SheetQuestion
+from workhold.bending.figures import Bending
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences, capitalize_sentence
 from workhold.errors import InputError
@@ -95,6 +96,8 @@ class SheetDetails:
     program, passing : what the machine does while the part is held, and where its tools come nearest to what
         holds it; None where that is not known.
     cutting : the jaw force that the program's tools ask for; None where their forces are not known.
+    bending : how far clamping bends the part; None where nobody asked.
+    bend : beyond which a part that bends or gives is warned of, in mm.
     bent : how far the pegs bend; None where nobody knows how high they press.
     listed_as : what ``number`` counts.
     moved : by how many columns and rows all stands further on than the fixture is listed.
@@ -131,6 +134,8 @@ class SheetDetails:
     program: Program | None = None
     passing: Passing | None = None
     cutting: CuttingNeed | None = None
+    bending: Bending | None = None
+    bend: float | None = None
     bent: BentPegs | None = None
     listed_as: str = "Fixture"
     moved: tuple[int, int] = (0, 0)
@@ -385,6 +390,7 @@ def collect_sheet_details(
     supports: ChosenSupports | None = None,
     first_side: FirstSide | None = None,
     listed_as: str = "Fixture",
+    bending: Bending | None = None,
     **asked: Any,
 ) -> tuple[Fixture, SheetDetails]:
     """Return one fixture with all figures of quality, and the further details of its setup sheet.
@@ -397,7 +403,7 @@ def collect_sheet_details(
     number, count : the rank in a larger result and how many that lists, for a fixture taken out of it.
     supports : see :class:`SheetDetails`; with these the sheet is of their fixture in holes that all have
         names.
-    result_hash, unit, first_side, listed_as : see :class:`SheetDetails`.
+    result_hash, unit, first_side, listed_as, bending : see :class:`SheetDetails`.
     asked : the fields of a :class:`workhold.asking.sheet.SheetQuestion`.
 
     Raises
@@ -410,7 +416,8 @@ def collect_sheet_details(
 
     question = SheetQuestion(**asked)
     if result.toolkit.flat_jaws is not None:
-        return hold_details(result, rank, question, result_hash, unit, number, count, listed_as)
+        held, details = hold_details(result, rank, question, result_hash, unit, number, count, listed_as)
+        return held, evolve(details, bending=bending, bend=question.bend)
     at, jaw, friction, seating = question.at, question.jaw, question.friction, question.seating
     peg_height, support_height = question.peg_height, question.support_height
     loads = result.query.loads if loads is None else loads
@@ -483,6 +490,8 @@ def collect_sheet_details(
         cutting=cutting,
         moved=move,
         is_asked_place=at is not None,
+        bending=bending,
+        bend=question.bend,
         bent=bent,
         thickness=thickness,
         first_side=first_side,

@@ -50,12 +50,14 @@ class Mesh:
     triangles : (M, 3) uint32 numbers of vertices, counter-clockwise from outside.
     colours : (N, 3) float32 linear red, green and blue from 0 to 1, over a white material; None for the colour of the
         body's kind.
+    about : what else its node says, as plain data; None for nothing.
     """
 
     positions: NDArray[np.float32]
     normals: NDArray[np.float32]
     triangles: NDArray[np.uint32]
     colours: NDArray[np.float32] | None = None
+    about: dict[str, Any] | None = None
 
 
 def make_body_mesh(body: FixtureBody) -> Mesh:
@@ -174,7 +176,7 @@ def make_bodies_glb(bodies: Sequence[FixtureBody], name: str, part: Mesh | None 
         # What has colours of its own has the material after those of the kinds.
         look = kinds.index(body.kind) if mesh.colours is None else len(kinds)
         meshes.append({"name": body.name, "primitives": [scene.add(mesh, look)]})
-        extras: dict[str, Any] = {"kind": str(body.kind)}
+        extras: dict[str, Any] = {"kind": str(body.kind)} | (mesh.about or {})
         if body.opens is not None:
             extras["opens"] = [body.opens[0], 0.0, 0.0 - body.opens[1]]
         nodes.append({"name": body.name, "mesh": number, "extras": extras})

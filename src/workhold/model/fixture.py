@@ -425,6 +425,8 @@ class Fixture:
         day: date | None = None,
         part_name: str | None = None,
         dowel: str | None = None,
+        material: str | None = None,
+        bend: float | None = None,
         jaw_force: float | None = None,
         jaw: str | float = "screw",
         friction: float | None = None,
@@ -455,6 +457,9 @@ class Fixture:
         day : the date on the sheet; today if None.
         part_name : written instead of the part's own name.
         dowel : what the pegs are and how they fit their holes, in words; those of the tolerance if None.
+        material : what the part is of, such as "aluminium-6061": the sheet then shows how far clamping bends it, see
+            :meth:`bending`.
+        bend : in mm, beyond which the sheet warns of a part that bends or gives.
         jaw_force : in N, per clamp; that of the query if None.
         jaw : what keeps the jaw where it is: "screw", "constant" for a constant force, or how many times as
             stiff as one contact it is.
@@ -473,7 +478,7 @@ class Fixture:
         best : which of its sets of three, from 1.
         support_height : of the supports in mm; the toolkit's own if None.
         clearance : how far the cutter is to keep off the pegs of a .dxf, in mm; 1 if None.
-        part : the STEP file of the part, for its own shape in a .step.
+        part : the STEP file of the part, for its own shape in a .step and for how far it bends.
         result_file : the file that the result was saved in; its hash then stands on the sheet.
         overwrite : whether a file that workhold has not written may be replaced.
 
@@ -499,6 +504,8 @@ class Fixture:
             day=day,
             part_name=part_name,
             dowel=dowel,
+            material=material,
+            bend=bend,
             jaw_force=jaw_force,
             jaw=jaw,
             friction=friction,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from attrs import evolve
 
 from workhold.bending.asking import BendingQuestion, find_bendings
 from workhold.bending.figures import Bending
@@ -144,12 +145,14 @@ def bent_mesh(bending: Bending, pose: Pose) -> Mesh:
     facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-30)[:, None]
     # Each triangle has vertices of its own, so that edges stay sharp.
-    return make_surface_mesh(
+    mesh = make_surface_mesh(
         corners.reshape(-1, 3),
         np.repeat(facing, 3, axis=0),
         np.arange(3 * len(small)).reshape(-1, 3),
         colours_of(bending)[small].reshape(-1, 3),
     )
+    told = {"most": bending.clamp_distortion.value, "error": bending.clamp_distortion.error, "times": times}
+    return evolve(mesh, about={"bent": told})
 
 
 def bent_glb(fixture: Fixture, bending: Bending) -> bytes:

@@ -159,9 +159,9 @@ def save_sheet(
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
         settings["supports"] = ChosenSupports.under(fixture, supports, best)
     if part is not None:
-        if ending not in STEP_ENDINGS:
+        if ending not in STEP_ENDINGS and settings["material"] is None:
             raise InputError(
-                f"{path} has no shape of the part: let the name end in .step, or leave part out."
+                f"{path} has no shape of the part: let the name end in .step, name the part's material, or leave part out."
             )
         settings["shape"] = read_part_shape(part, listed.result.workpiece)
     if ending in MODEL_ENDINGS:
@@ -211,7 +211,7 @@ def write_paper(
     path : of a file whose name ends in .pdf, .svg or .png.
     result_file : the file that the result is in, whose hash stands on the sheet; None for a result of no
         file.
-    settings : as of :func:`workhold.drawing.sheet_facts.collect_sheet_details`.
+    settings : as of :func:`workhold.drawing.sheet_facts.collect_sheet_details`, and the ``shape`` of the part.
 
     Raises
     ------
@@ -226,6 +226,11 @@ def write_paper(
         raise InputError(
             f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}."
         )
+    shape = settings.pop("shape", None)
+    if settings.get("material") is not None:
+        from workhold.presenting.bent import bend_sheet
+
+        settings["bending"] = bend_sheet(result[rank - 1], settings, shape)
     pages = draw_setup_sheet(result, rank, result_hash=hash_of(result_file), **settings)
     write_bytes(path, make_pages_file(pages, ending, settings["day"]))
 

@@ -292,7 +292,7 @@ async def paper(
         job.result_hash,
         chosen,
         before,
-        job.shape if kind in OF_BODIES else None,
+        job.shape if kind in OF_BODIES or asked.to_sheet_question().material is not None else None,
     )
     content, result_hash = await run_at_desk(request, "paper", order)
     if result_hash is not None and job.result is result:

@@ -138,6 +138,10 @@ def make_sheet_file(order: PaperOrder) -> tuple[bytes, str | None]:
         asked |= {"supports": chosen, "thickness": chosen.supports.request.thickness}
     if order.before is not None:
         asked["first_side"] = first_side(order.fixture, order.result.query, *order.before)
+    if order.question.material is not None:
+        from workhold.presenting.bent import bend_sheet
+
+        asked["bending"] = bend_sheet(order.fixture, asked, order.shape)
     pages = draw_setup_sheet(order.result, order.rank, result_hash=digest, **asked)
     assert order.question.day is not None
     return make_pages_file(pages, Path(order.kind).suffix, order.question.day), digest
@@ -196,6 +200,12 @@ def make_bodies_file(order: PaperOrder) -> tuple[bytes, str | None]:
     names = ("peg_length", "peg_height", *(("thickness",) if chosen is None else ()))
     lengths = {name: getattr(order.question, name) for name in names}
     assembly = Assembly.from_fixture(order.fixture, order.result, lengths, chosen, order.shape)
+    if order.question.material is not None and chosen is None:
+        from workhold.presenting.bent import bend_sheet, bent_glb
+
+        bending = bend_sheet(order.fixture, collect_declared_values(order.question), order.shape)
+        assert bending is not None
+        return bent_glb(order.fixture, bending), None
     return assembly.make_file_content(".glb"), None
 
 

@@ -103,6 +103,7 @@ async function showSide(number) {
     byId("space-canvas").focus();
     setSlider(bodies);
     await withShape(shown, path, mine);
+    await withBending(shown, path, mine);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
     if (mine !== latest) return;
@@ -140,6 +141,20 @@ async function withShape(shown, path, mine) {
   if (mine !== latest) return;
   sayOfShape(why);
   if (isSent(shown)) await shownFrom(path, mine, true);
+}
+
+/** Show the part bent and coloured, where its material is named among what stands on the sheet. */
+async function withBending(shown, path, mine) {
+  const { material } = sheetQuery(shown.known.sheet);
+  if (mine !== latest || !material) return;
+  sayOfShape("Bending the part …");
+  const bent = `${path}${path.includes("?") ? "&" : "?"}material=${encodeURIComponent(material)}`;
+  const bodies = await shownFrom(bent, mine, true);
+  const told = bodies?.find((body) => body.bent)?.bent;
+  if (!told) return;
+  byId("space-save").setAttribute("href", bent);
+  const [most, error] = [told.most, told.error].map((value) => (1000 * value).toPrecision(2));
+  sayOfShape(`Clamping bends the part by up to ${most} µm, give or take ${error} µm: yellow the most, dark blue nothing, grey where something presses. It is shown bent ${told.times.toLocaleString("en")} times as far.`);
 }
 
 /** Say something about the shape of the part. @param {string} words */

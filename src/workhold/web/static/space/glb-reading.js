@@ -6,8 +6,10 @@
  * @typedef {Object} Body
  * @property {string} name
  * @property {string} kind part, peg, clamp, plate, wall or support
+ * @property {{most: number, error: number, times: number}|null} bent how far clamping bends it at most, in mm, and how many times as far it is
  * @property {number[]|null} opens unit vector along which it moves away when opened
  * @property {number[]} colour red, green and blue from 0 to 1, linear light
+ * @property {Float32Array|null} colours of the vertices, as colour
  * @property {Float32Array} positions in metres, y up
  * @property {Float32Array} normals
  * @property {Uint32Array} triangles
@@ -37,8 +39,10 @@ export function bodiesOf(content) {
       return {
         name: node.name,
         kind: node.extras.kind,
+        bent: node.extras.bent ?? null,
         opens: node.extras.opens ?? null,
         colour: told.materials[material].pbrMetallicRoughness.baseColorFactor,
+        colours: attributes.COLOR_0 === undefined ? null : values(attributes.COLOR_0),
         positions: values(attributes.POSITION),
         normals: values(attributes.NORMAL),
         triangles: values(indices),

@@ -88,7 +88,7 @@ export class PlainView extends Orbit {
   }
 
   /** Fill the triangles of a body that look this way. */
-  fill(seen, { positions, normals, triangles, colour, opens }) {
+  fill(seen, { positions, normals, triangles, colour, colours, opens }) {
     const axes = this.axes();
     const by = opens ? opens.map((value) => value * this.opened) : [0, 0, 0];
     const scale = seen.height / 2 / HALF_FIELD;
@@ -101,12 +101,14 @@ export class PlainView extends Orbit {
       xs[k] = seen.width / 2 + scale * right * nearness[k];
       ys[k] = seen.height / 2 - scale * up * nearness[k];
     }
-    const screen = colour.map((value) => 255 * value ** (1 / 2.2));
+    const onScreen = (value) => 255 * value ** (1 / 2.2);
+    const whole = colour.map(onScreen);
     seen.bodies += 1;
     for (let k = 0; k < triangles.length; k += 3) {
       const [a, b, c] = [triangles[k], triangles[k + 1], triangles[k + 2]];
       const area = (xs[b] - xs[a]) * (ys[c] - ys[a]) - (xs[c] - xs[a]) * (ys[b] - ys[a]);
       if (area >= 0) continue;
+      const screen = colours ? [0, 1, 2].map((k) => onScreen((colours[3 * a + k] + colours[3 * b + k] + colours[3 * c + k]) / 3)) : whole;
       const normal = [0, 1, 2].map((axis) => (normals[3 * a + axis] + normals[3 * b + axis] + normals[3 * c + axis]) / 3);
       const [right, up, out] = axes.map((way) => way[0] * normal[0] + way[1] * normal[1] + way[2] * normal[2]);
       const light = AMBIENT + (1 - AMBIENT) * Math.max(0, right * LAMP[0] + up * LAMP[1] + out * LAMP[2]);

@@ -43,6 +43,10 @@ export class SpaceView extends Orbit {
       const [red, green, blue] = body.colour;
       const material = new THREE.MeshLambertMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
       material.color.setRGB(red, green, blue);
+      if (body.colours) {
+        geometry.setAttribute("color", new THREE.BufferAttribute(body.colours, 3));
+        material.vertexColors = true;
+      }
       const mesh = new THREE.Mesh(geometry, material);
       const edges = new THREE.BufferGeometry();
       edges.setAttribute("position", new THREE.BufferAttribute(edgesOf(body), 3));
