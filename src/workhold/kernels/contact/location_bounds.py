@@ -17,6 +17,13 @@ sweep times the movement of the centre. So the same movement belongs to errors o
 than g_i e. Let z be the largest movement of a probe at u' for the tolerances, and h that for errors of sizes
 g_i. Then z is at most e (1 + h), and e >= z / (1 + h) is the bound, the largest of all probes. It holds as
 well where contacts in the middles fix no pose: all is multiplied by the determinant.
+
+Two pegs on each of two carriers: what a moving peg measures lacks its part of the travel, n . x times the
+travel. From u to u' that part changes by no more than the turn s of its normal and the turn h of the pegs,
+times the travel. The travel is no more than 2 e over the larger n . x of both moving pegs: each says what
+the part moves there, which is no more than e, and is off by no more than peg + face. That is no more than e
+either, because such an error of a standing peg moves the part by as much. So g_i is larger there by
+2 (s + h) over the larger n . x.
 """
 
 from __future__ import annotations
@@ -49,9 +56,14 @@ SPOT_NX, SPOT_NY, SPOT_MOMENT, SPOT_GIVE, SPOT_FEATURE, SPOT_FIRST, SPOT_COUNT =
 SPOT_LENGTH = 7
 # Of a contact in place no more than these are known.
 CONTACT_LENGTH = 5
-# Errors this part beyond the limit are surely beyond it, whatever is rounded. So many times what a minor may
-# be off by is more than movements and determinants are.
-BEYOND, WIDE = 1.001, 40.0
+# Errors this part beyond the limit are surely beyond it, whatever is rounded.
+BEYOND = 1.001
+# By how many times what a minor may be off by movements may be, at most: with three locators, and with two and two.
+# Let normals turn by s and points move by r. The components of the cross product of two wrenches are then
+# off by 5.7 s + 2 r / L, half of ``minor_band``. A probe multiplies them by no more than 1.42 + 1.42 together,
+# and three contacts make 4.3 minors. A determinant is off by one. Of two and two, wrenches of sizes up to 2
+# are combined before.
+WIDE_OF_THREE, WIDE_OF_FOUR = 4.5, 40.0
 # Radians beside a quarter turn that count as such.
 SQUARE = 1e-4
 
@@ -130,7 +142,8 @@ def is_beyond(
     psi : orientation in radians.
     """
     most = BEYOND * most_allowed(psi, psi, precision) / doubt_at(features, count, precision)
-    enough = most * (size + WIDE * band) + WIDE * band * (precision.peg + precision.face)
+    wide = band * (WIDE_OF_THREE if count == 3 else WIDE_OF_FOUR)
+    enough = most * (size + wide) + wide * (precision.peg + precision.face)
     return error_times(moves, features, count, precision, enough) > enough
 
 
@@ -193,11 +206,17 @@ def write_spot(
     nx, ny = outward_normal(row, x, y)
     out[SPOT_NX], out[SPOT_NY], out[SPOT_FEATURE] = nx, ny, feature
     out[SPOT_MOMENT] = (x * ny - y * nx) / length
-    off = radius
-    if row[IS_ARC] != 0.0:
-        # See ``curves.near_spots``.
-        off = 1.1 * radius / row[RADIUS] if radius <= 0.5 * row[RADIUS] else 2.0
+    off = radius if row[IS_ARC] == 0.0 else swing_within(row, radius)
     out[SPOT_GIVE] = off * precision.gives[feature]
+
+
+@inner
+def swing_within(row: Array, radius: float) -> float:
+    """By how many radians the normal of a contact may be off that is known to a radius in mm."""
+    if row[IS_ARC] == 0.0:
+        return 0.0
+    # See ``curves.near_spots``.
+    return 1.1 * radius / row[RADIUS] if radius <= 0.5 * row[RADIUS] else 2.0
 
 
 @inner
@@ -221,6 +240,58 @@ def least_error_in(
             along = room[i, 0] * probes[p, 0] + room[i, 1] * probes[p, 1] + room[i, 2] * probes[p, 2]
             give += spot[SPOT_GIVE] * abs(along)
         error = doubt * probe_error(room, room[3], 3, precision, p) / max(size + give, 1e-300)
+        least = max(least, error)
+        if least > enough:
+            break
+    return least
+
+
+@inner
+def least_error_of_four(
+    first: Array,
+    second: Array,
+    third: Array,
+    fourth: Array,
+    along: tuple[float, float],
+    extra: tuple[float, float],
+    precision: Precision,
+    room: Array,
+    numbers: Array,
+    enough: float,
+) -> float:
+    """What the effective error of any seat of two and two pegs with contacts in four spots is no less than, in mm.
+
+    Parameters
+    ----------
+    first, second : spots of the standing pegs.
+    third, fourth : spots of the moving pegs.
+    along : the normals of the moving pegs' contacts along the travel.
+    extra : what contacts of the moving pegs may be off by for a location error of 1, because of the travel.
+    room : (8, 3) work space.
+    numbers : (4,) work space.
+    enough : a bound above this is as good as any larger one.
+    """
+    across, moves = room[3], room[4:]
+    for n in range(3):
+        across[n] = along[1] * third[n] - along[0] * fourth[n]
+    cross_rows(second, across, moves[0])
+    cross_rows(across, first, moves[1])
+    cross_rows(first, second, moves[2])
+    size = abs(first[0] * moves[0, 0] + first[1] * moves[0, 1] + first[2] * moves[0, 2])
+    for n in range(3):
+        moves[3, n] = -along[0] * moves[2, n]
+        moves[2, n] = along[1] * moves[2, n]
+    numbers[0], numbers[1] = first[SPOT_FEATURE], second[SPOT_FEATURE]
+    numbers[2], numbers[3] = third[SPOT_FEATURE], fourth[SPOT_FEATURE]
+    gives = (first[SPOT_GIVE], second[SPOT_GIVE], third[SPOT_GIVE] + extra[0], fourth[SPOT_GIVE] + extra[1])
+    least, probes, doubt = 0.0, precision.probes, doubt_at(numbers, 4, precision)
+    for p in range(probes.shape[0]):
+        give = 0.0
+        for i in range(4):
+            give += gives[i] * abs(
+                moves[i, 0] * probes[p, 0] + moves[i, 1] * probes[p, 1] + moves[i, 2] * probes[p, 2]
+            )
+        error = doubt * probe_error(moves, numbers, 4, precision, p) / max(size + give, 1e-300)
         least = max(least, error)
         if least > enough:
             break

@@ -54,7 +54,7 @@ STATISTICS = 5
 NO_ROOM_FOR_RECORDS, NO_ROOM_FOR_PIECES = -1, -2
 # Columns of roles in ``two_and_two`` and of limbs in ``three_and_one``, and how many parts ``sliding_pairs``
 # cuts the range of a sliding pair to.
-ROLE_LENGTH, LIMB_LENGTH, SLIDE_PARTS = 8, 20, 8
+ROLE_LENGTH, LIMB_LENGTH, SLIDE_PARTS = 20, 20, 8
 # Rows of what moving pegs need of three standing ones.
 TRIPLE_ROWS = 8
 # mm. A tail known no better than this is looked for on its other curve, too.
@@ -73,7 +73,7 @@ class BlockSpace(NamedTuple):
     edges : (2, 14) ends of a piece.
     out : (R, 19) receives the records.
     pieces : (P, 24) the pieces of a cell.
-    standing, moving, unordered : (P, 8) roles, see ``two_and_two``.
+    standing, moving, unordered : (P, 20) roles, see ``two_and_two``.
     limbs, unordered_limbs : (P, 20), see ``three_and_one``.
     keys, order : (P,) of what is sorted.
     kept : (M, 15), see ``piece_bounds.clear_edges``.

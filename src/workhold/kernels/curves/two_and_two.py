@@ -11,22 +11,25 @@ against each other along x. The difference of their heights must be able to be a
 
 from __future__ import annotations
 
-from math import ceil, floor
+from math import ceil, cos, floor, inf, sin
 
 import numpy as np
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.arrays import sort_rows
-from workhold.kernels.base.compiling import Array, IntArray, IntVector, Vector, compiled, inner
+from workhold.kernels.base.compiling import Array, IntVector, Vector, compiled, inner
 from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
     CENTER,
     CURVE,
+    HEAD,
     HIGH,
     LEFTWARD_LOW,
+    LENGTH,
     LOW,
     RIGHTWARD_LOW,
+    SHIFT,
     STEADY,
     TAIL,
     VALUE_LEAST,
@@ -39,6 +42,16 @@ from workhold.kernels.base.tables import (
     Limits,
 )
 from workhold.kernels.chord.evaluation import HEIGHT
+from workhold.kernels.contact.location_bounds import (
+    BEYOND,
+    CONTACT_LENGTH,
+    SPOT_NX,
+    SPOT_NY,
+    least_error_of_four,
+    most_allowed,
+    swing_within,
+    write_spot,
+)
 from workhold.kernels.contact.record import angle_of, write_given_up
 from workhold.kernels.curves.block_work import (
     CROSSED,
@@ -53,27 +66,30 @@ from workhold.kernels.curves.block_work import (
     is_among,
     place_chord,
 )
-from workhold.kernels.curves.piece_bounds import HAIR, clear_edges
+from workhold.kernels.curves.piece_bounds import HAIR, clear_edges, tail_disc
 from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
 # Columns of a role: what the pairing of pieces looks at, one row for each piece that may be on that carrier.
 ROLE_X, ROLE_FORCE_LOW, ROLE_FORCE_HIGH, ROLE_VALUE_LEAST = range(4)
 ROLE_VALUE_MOST, ROLE_LOW, ROLE_HIGH, ROLE_PIECE = range(4, 8)
+# By how many radians the normals at both contacts may be off, and both as spots (``contact.location_bounds``).
+ROLE_TAIL_SWING, ROLE_HEAD_SWING = 8, 9
+ROLE_TAIL_SPOT, ROLE_HEAD_SPOT = 10, 10 + CONTACT_LENGTH
 
 
 @inner
 def write_roles(
     pieces: Array,
-    integers: IntArray,
     touched: tuple[int, int],
     x_column: int,
     force_column: int,
-    counting: bool,
+    work: BlockWork,
     out: Array,
 ) -> int:
-    """Writes the (N, 8) roles of the pieces that may be on one carrier, and returns their number."""
-    count = int(np.int64(0))
+    """Writes the (N, 20) roles of the pieces that may be on one carrier, and returns their number."""
+    count, integers, counting = int(np.int64(0)), work.curves.integers, work.counting
+    asks_errors = limits_errors(work)
     for k in range(pieces.shape[0]):
         row = pieces[k]
         if row[force_column] > row[force_column + 1] and not counting:
@@ -85,8 +101,62 @@ def write_roles(
         role[ROLE_FORCE_HIGH] = row[force_column + 1]
         role[ROLE_VALUE_LEAST], role[ROLE_VALUE_MOST] = row[VALUE_LEAST], row[VALUE_MOST]
         role[ROLE_LOW], role[ROLE_HIGH], role[ROLE_PIECE] = row[LOW], row[HIGH], k
+        if asks_errors:
+            write_role_spots(role, row, work)
         count += 1
     return count
+
+
+@inner
+def limits_errors(work: BlockWork) -> bool:
+    """Whether only fixtures up to some location error are of interest."""
+    return not work.counting and work.features.precision.most < inf
+
+
+@inner
+def write_role_spots(role: Array, piece: Array, work: BlockWork) -> None:
+    """Writes the spots that both pegs of a piece may touch, and how far their normals may be off."""
+    number, features, length = int(piece[CURVE]), work.features, work.limits.wrench_length
+    curve = work.curves.reals[number]
+    tail, head = work.curves.integers[number, TAIL], work.curves.integers[number, HEAD]
+    a, b = features.loose[tail], features.loose[head]
+    psi, half = (piece[LOW] + piece[HIGH]) / 2.0, (piece[HIGH] - piece[LOW]) / 2.0
+    x, y, radius = tail_disc(a, b, curve, psi, half)
+    alpha, d = psi + curve[SHIFT], curve[LENGTH]
+    off = radius + d * half
+    given = features.precision
+    write_spot(a, tail, x, y, radius, given, length, role[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT])
+    write_spot(b, head, x + d * cos(alpha), y + d * sin(alpha), off, given, length, role[ROLE_HEAD_SPOT:])
+    role[ROLE_TAIL_SWING], role[ROLE_HEAD_SWING] = swing_within(a, radius), swing_within(b, off)
+
+
+@inner
+def is_still_beyond(still: Array, moving: Array, work: BlockWork) -> bool:
+    """Whether the pegs of two roles, of which one stands still, surely have a larger error than is of interest."""
+    low, high = max(still[ROLE_LOW], moving[ROLE_LOW]), min(still[ROLE_HIGH], moving[ROLE_HIGH])
+    psi, half = (low + high) / 2.0, (high - low) / 2.0
+    ahead, aside = cos(psi), sin(psi)
+    tail, head = moving[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT], moving[ROLE_HEAD_SPOT:]
+    one = tail[SPOT_NX] * ahead + tail[SPOT_NY] * aside
+    two = head[SPOT_NX] * ahead + head[SPOT_NY] * aside
+    off, other_off = moving[ROLE_TAIL_SWING] + half, moving[ROLE_HEAD_SWING] + half
+    larger = max(abs(one) - off, abs(two) - other_off)
+    if larger <= 0.0:
+        return False
+    given = work.features.precision
+    most = BEYOND * most_allowed(low, high, given)
+    first, second = still[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT], still[ROLE_HEAD_SPOT:]
+    extra = (2.0 * off / larger, 2.0 * other_off / larger)
+    least = least_error_of_four(
+        first, second, tail, head, (one, two), extra, given, work.triple, work.null, most
+    )
+    return least > most
+
+
+@inner
+def are_beyond(standing: Array, moving: Array, work: BlockWork) -> bool:
+    """Whether the pegs of two roles surely have a larger error than is of interest, whichever stands still."""
+    return is_still_beyond(standing, moving, work) and is_still_beyond(moving, standing, work)
 
 
 @inner
@@ -149,12 +219,12 @@ def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Ar
 
     Parameters
     ----------
-    standing, moving : (N, 8) and (M, 8) roles, the moving ones from right to left.
+    standing, moving : (N, 20) and (M, 20) roles, the moving ones from right to left.
     """
     stats, counting = work.stats, work.counting
     features, curves, lattice, limits = work.features, work.curves, work.lattice, work.limits
     integers, offset, pitch_y = curves.integers, lattice.row_offset, lattice.pitch_y
-    gap = limits.gap - GAP_SLACK - HAIR
+    gap, asks_errors = limits.gap - GAP_SLACK - HAIR, limits_errors(work)
     once = counting and limits.most_listed == 0.0 and counts_once(features, lattice)
     for i in range(standing.shape[0]):
         if stats[STOPPED] != 0:
@@ -177,6 +247,8 @@ def add_pairs(out: Array, count: int, standing: Array, moving: Array, pieces: Ar
                 continue
             steady = first[STEADY] * second[STEADY] == 1.0
             if steady and not may_meet(first, second, offset, pitch_y):
+                continue
+            if asks_errors and are_beyond(role, other, work):
                 continue
             if stats[STOPPED] != 0:
                 break
@@ -249,13 +321,9 @@ def two_and_two_cells(
         )
         if number < 0:
             return NO_ROOM_FOR_PIECES
-        pieces, integers = space.pieces[:number], curves.integers
-        standing = write_roles(
-            pieces, integers, features.standing, X_STANDING, standing_force, counting, space.standing
-        )
-        moving = write_roles(
-            pieces, integers, features.moving, X_MOVING, moving_force, counting, space.unordered
-        )
+        pieces = space.pieces[:number]
+        standing = write_roles(pieces, features.standing, X_STANDING, standing_force, work, space.standing)
+        moving = write_roles(pieces, features.moving, X_MOVING, moving_force, work, space.unordered)
         # The rightmost first.
         sort_rows(
             space.unordered[:moving],
