@@ -70,6 +70,10 @@ MAKERS: dict[str, tuple[Callable[[], Any], Callable[[], Any]]] = {
         lambda: workhold.Restrictions(zones=(workhold.polygon_zone([(0, 0), (1, 0), (0, 1)]),)),
     ),
     "Result": (result, lambda: workhold.design(wedge("other"), result().toolkit)),
+    "StrapPlate": (
+        lambda: workhold.StrapPlate(pitch=20, peg_radius=3),
+        lambda: workhold.StrapPlate(pitch=20, peg_radius=3, straps=3),
+    ),
     "Tolerance": (lambda: workhold.Tolerance(), lambda: workhold.Tolerance.preset("plate-20mm")),
     "Vise": (
         lambda: workhold.Vise(pitch=10, columns=2, peg_radius=3, blocked=("L-B3",)),

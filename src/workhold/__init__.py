@@ -1,9 +1,9 @@
 """workhold finds every way to hold a flat part: in a vise, on a plate with clamps, or against a fence.
 
 The public face is small. The function :func:`load` reads a part; :class:`Vise`, :class:`Plate`, :class:`Fence`,
-:class:`FlatJaw` and :class:`PlainVise` describe what holds it. The function :func:`run_design_tool` finds all fixtures and
-returns a :class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on first use, so
-``import workhold`` costs next to nothing.
+:class:`FlatJaw`, :class:`PlainVise` and :class:`StrapPlate` describe what holds it. The function :func:`design` finds
+all fixtures and returns a :class:`Result`; :func:`save` writes it, and :func:`open` reads it. Names are imported on
+first use, so ``import workhold`` costs next to nothing.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from workhold.fixels.flat_jaw import FlatJaw
     from workhold.fixels.plain_vise import PlainVise
     from workhold.fixels.plate import Plate
+    from workhold.fixels.strapped import StrapPlate
     from workhold.fixels.vise import OpeningVise, Vise
     from workhold.model.fixture import Fixture, Peg
     from workhold.model.pose import Pose
@@ -57,6 +58,7 @@ __all__ = [
     "Query",
     "Restrictions",
     "Result",
+    "StrapPlate",
     "Tolerance",
     "Vise",
     "WorkholdError",
@@ -86,6 +88,7 @@ HOMES = {
     "Load": "workhold.model.requirements",
     "Peg": "workhold.model.fixture",
     "PlainVise": "workhold.fixels.plain_vise",
+    "StrapPlate": "workhold.fixels.strapped",
     "Plate": "workhold.fixels.plate",
     "Pose": "workhold.model.pose",
     "Program": "workhold.model.program",

@@ -14,10 +14,13 @@ from typing import Any
 
 from attrs import astuple, evolve, fields
 
+from workhold.fixels.carrier import Carrier
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 from workhold.model.notes import KeptBest
 from workhold.model.result import Result
 from workhold.model.search_report import Proof, Undecided
+from workhold.model.straps import StrappedHold
 from workhold.verification.account import is_by_algebra
 from workhold.verification.listing import Listing, collect_claims, read_listing
 from workhold.verification.repeats import KnownFixtures
@@ -31,6 +34,8 @@ Progress = Callable[[float, int], None]
 SAME_ORIENTATION = 1e-6
 # mm or degrees. Numbers of a seating that agree to this are the same.
 SAME_SEATING = 1e-6
+# A part of a force by which the best straps found anew may need another.
+SAME_NEED = 1e-3
 
 
 def verify(
@@ -112,6 +117,9 @@ def find_differences(listing: Listing, result: Result) -> Iterator[str]:
 
     A listing that says it is incomplete may lack fixtures, and its account is that of a part of the work.
     """
+    if listing.query.toolkit.strap_set is not None:
+        yield from seat_differences(listing, result)
+        return
     if listing.query.toolkit.flat_jaws is not None:
         yield from hold_differences(listing, result)
         return
@@ -182,12 +190,47 @@ def hold_differences(listing: Listing, result: Result) -> Iterator[str]:
             yield from find_other_numbers(name, getattr(listing, name), getattr(result, name))
 
 
+def seat_differences(listing: Listing, result: Result) -> Iterator[str]:
+    """The differences between seats under straps and a new search of their query, as :func:`differences`."""
+    plate = listing.query.toolkit.plates[0]
+    mine, theirs = ({seat_key(one, plate): one for one in some} for some in (result, listing.fixtures))
+    is_cut = len(listing.fixtures) < sum(listing.found.values())
+    for key, one in mine.items():
+        if key not in theirs:
+            if listing.complete and not is_cut:
+                yield f"the seat {' '.join(peg.hole for peg in one.pegs)} at {key[0]:g} degrees is missing"
+            continue
+        hold, written = one.hold, theirs[key].hold
+        if isinstance(hold, StrappedHold) and isinstance(written, StrappedHold):
+            need, said = hold.clamp_needed, written.clamp_needed
+            if (need is None) != (said is None) or (need and said and abs(need - said) > SAME_NEED * need):
+                yield (
+                    f"the best straps at {' '.join(peg.hole for peg in one.pegs)} need "
+                    f"{'no force that holds' if need is None else f'{need:.6g} N'}, not what is written"
+                )
+    for key, one in theirs.items():
+        if key not in mine and not is_cut:
+            yield f"the seat {' '.join(peg.hole for peg in one.pegs)} at {key[0]:g} degrees is not found anew"
+    if listing.complete:
+        for name in ("found", "distinct"):
+            yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+
+
+def seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, ...], float, float]:
+    """What distinguishes a seat wherever it stands on its plate: angle, holes, and the part's place beside them."""
+    column, row = (min(getattr(peg, name) for peg in fixture.pegs) for name in ("column", "row"))
+    holes = sorted((peg.column - column, peg.row - row) for peg in fixture.pegs)
+    x, y = plate.place(column, row)
+    place = round(fixture.pose.x - x, 4) + 0.0, round(fixture.pose.y - y, 4) + 0.0
+    return round(fixture.pose.theta_deg, 4) % 360, tuple(v for hole in holes for v in hole), *place
+
+
 def count_fixture_keys(fixtures: Iterable[Fixture]) -> dict[tuple[float, float, str | None], int]:
     """Return the places of fixtures of flat jaws by what distinguishes them."""
     return {
         (round(one.pose.theta_deg, 4) % 360, round(one.hold.parallels, 6), one.hold.stop): place
         for place, one in enumerate(fixtures)
-        if one.hold is not None
+        if isinstance(one.hold, JawHold)
     }
 
 

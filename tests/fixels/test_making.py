@@ -161,7 +161,7 @@ def test_aliases_are_kinds_with_fields_of_their_own() -> None:
         (
             "edge of nowhere",
             {},
-            "is not known: choose among vise, opening-vise, translating-clamp, edge, flat-jaw, plain-vise, gripper, plate",
+            "is not known: choose among vise, opening-vise, translating-clamp, edge, flat-jaw, plain-vise, strapped",
         ),
     ],
 )

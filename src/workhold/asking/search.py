@@ -94,16 +94,30 @@ class SearchQuestion:
     )
     friction: Any = declare(
         "coefficients",
-        "Coefficients of friction where flat jaws hold the part: jaw between a jaw and the part; usual ones, which "
+        "Coefficients of friction by name where friction holds the part: jaw, or plate and tip; usual ones, which "
         "the answer names, if not given.",
         section=LOADS,
-        typed="Coefficients of friction where flat jaws hold the part, such as jaw=0.15; a usual one, which the answer "
-        "names, if not given.",
+        typed="Coefficients of friction where friction holds the part, such as jaw=0.15, or plate=0.15,tip=0.2 under "
+        "straps; usual ones, which the answer names, if not given.",
     )
     safety: float | None = declare(
         "number",
         "Safety factor on the loads where friction holds the part; 2 if not given.",
         section=LOADS,
+    )
+    weight: float | None = declare(
+        "force",
+        "Weight of the part, which helps to hold it where straps press it down.",
+        section=LOADS,
+        least="0",
+        typed="Weight of the part, in N or with its unit, which helps to hold it where straps press it down.",
+    )
+    strapped: int | None = declare(
+        "count",
+        "Of a plate with straps: for so many of the best seats the straps are sought; 20 if not given.",
+        section=SEARCH,
+        most=1_000,
+        metavar="M",
     )
     seating: int | None = declare(
         "count",

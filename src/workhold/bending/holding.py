@@ -27,6 +27,7 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import Touched
 from workhold.statics.loads import compute_shared_forces, find_contacts_on_part
@@ -135,6 +136,10 @@ def hold_of_fixture(
     below : pads and a clamp on top; the part lies on its foot if None.
     """
     size = max(np.ptp(np.array(workpiece.bounds).reshape(2, 2), axis=0).max(), height)
+    if isinstance(fixture.hold, StrappedHold):
+        raise InputError(
+            "how far straps bend a part is not worked out: leave bending out, or take a plate with clamps."
+        )
     if fixture.hold is not None:
         return hold_of_jaws(fixture, fixture.hold, foot, jaw_force, height, float(size))
     if workpiece.solid is None:

@@ -192,6 +192,10 @@ class Output:
         return None if self.out == STANDARD_OUTPUT else self.out
 
 
+# What a part is held with that needs friction, as notes name it.
+STRAPPED = "strap-plate-20mm"
+
+
 @frozen
 class DesignTask:
     """A search and how it is to be answered.
@@ -465,10 +469,12 @@ def report_found(result: Result, spent: str, output: Output, unit: Unit) -> None
         )
     out = output.file
     proof = describe_proof_and_undecided(result, out if output.form != "csv" else None)
-    left_out = [count_unfit_in_words(shown.unfit, bool(result.holds))] if shown.unfit else []
+    left_out = [count_unfit_in_words(shown.unfit, result.toolkit)] if shown.unfit else []
     print_tables(f"{sentence}; {spent}.", *left_out, *proof, stream=output.stream)
     if out is not None:
         print_tables(f"Written to {out}.", stream=output.stream)
+    if any(STRAPPED in note.words for note in result.reasons):
+        print_remark(f"friction holds it under straps: try workhold design PART --toolkit {STRAPPED}.")
     if not result.complete:
         marked = "" if out is None else f", and {out} is marked so"
         print_remark(f"interrupted: these are only some of the fixtures{marked}.")

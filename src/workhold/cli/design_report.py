@@ -119,7 +119,9 @@ def print_explanation(
 
     print_tables("", stream=stream)
     if explanation.contacts:
-        sets = "sets of four contacts" if toolkit.flat_jaws is None else "ways to lie"
+        sets = "sets of four contacts"
+        if toolkit.holds_by_friction:
+            sets = "ways to lie" if toolkit.strap_set is None else "seats"
         table = Table(("rule", f">{sets}", ">removed", ">left"))
         for removal in explanation.removals:
             table.add_row(removal.rule, f"{removal.before:,}", f"{removal.removed:,}", f"{removal.after:,}")

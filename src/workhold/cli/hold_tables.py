@@ -1,9 +1,10 @@
-"""Tables and sentences for the terminal of what flat jaws hold by friction."""
+"""Tables and sentences for the terminal of what friction holds, between flat jaws or under straps."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from workhold.cli.strap_tables import first_strap_sentence, strap_table, strapped_fixture_tables
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_figure_number, format_rounded, make_short_heading
 from workhold.units import Unit
@@ -22,12 +23,14 @@ SHOWN = ("clamp_needed", "slip_reserve", "safety_reached", "grip", "above", "con
 def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
     """Tabulate the best holds: what lies on the fixed jaw, parallels, stop and opening, and figures."""
     from workhold.model.hold_words import describe_touched_faces
-    from workhold.model.jaw_hold import HOLD_FIGURES
+    from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
 
+    if result.toolkit.strap_set is not None:
+        return strap_table(result, entries, count, unit)
     known = {key for hold in result.holds for key in hold.figures}
     figures = [figure for figure in HOLD_FIGURES if figure.key in SHOWN and figure.key in known]
     short = unit.abbreviation
-    has_stop = any(hold.stop for hold in result.holds)
+    has_stop = any(isinstance(hold, JawHold) and hold.stop for hold in result.holds)
     columns = (
         ">rank",
         "fixed jaw on",
@@ -41,7 +44,7 @@ def hold_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tabl
     for index in entries.index[:count].tolist():
         fixture = result[index]
         hold = fixture.hold
-        assert hold is not None
+        assert isinstance(hold, JawHold)
         if hold.is_unfit or not hold.full_contact:
             table.red.add(len(table.rows))
         table.add_row(
@@ -66,6 +69,8 @@ def explain_first_hold(result: Result, unit: Unit) -> str:
     from workhold.model.hold_words import describe_coefficients, hold_reasons
 
     first = result[0]
+    if result.toolkit.strap_set is not None:
+        return first_strap_sentence(result, unit)
     said = f"First: {'; '.join(hold_reasons(first, unit))}."
     return f"{said} {describe_coefficients(result.query)}" if result.query.is_loaded else said
 
@@ -73,10 +78,12 @@ def explain_first_hold(result: Result, unit: Unit) -> str:
 def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
     """Say how to set up one hold, with lengths in a unit, and what each load asks for."""
     from workhold.model.hold_words import describe_coefficients, write_setup_sentences, write_warnings
+    from workhold.model.jaw_hold import JawHold
     from workhold.statics.jaw_program import asked_words
 
-    assert fixture.hold is not None
     hold, query = fixture.hold, fixture.listing.result.query
+    if not isinstance(hold, JawHold):
+        return strapped_fixture_tables(fixture, rank, total, unit)
     steps = (f"{step}." for step in write_setup_sentences(fixture, query, unit))
     tables: list[Table | str] = [f"Fixture {rank} of {total}", *steps]
     if query.is_loaded:

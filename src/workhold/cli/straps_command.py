@@ -169,7 +169,7 @@ def tabulate(
     out += [f"{step}." for step in list_steps(found, fixture, asked, unit)]
     if found.straps:
         table = Table(("strap", "bolt in", f">tip at x {short}", f">tip at y {short}"))
-        plate = asked.plate(fixture)
+        plate = asked.bolts(fixture)
         for number, one in enumerate(found.straps, 1):
             table.add_row(str(number), plate.place_name(*one.hole), *(unit.number(value) for value in one.at))
         out += ["", table]

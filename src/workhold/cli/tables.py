@@ -88,14 +88,14 @@ def explain_first_fixture(result: Result, unit: Unit) -> str:
     return why_first(result, unit)
 
 
-def count_unfit_in_words(unfit: int, between_jaws: bool = False) -> str:
+def count_unfit_in_words(unfit: int, toolkit: Toolkit | None = None) -> str:
     """Say how many fixtures are not shown because they are none for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
-    why = (
-        "a jaw touches a corner alone"
-        if between_jaws
-        else "the part may lie anywhere, or one peg hardly holds"
-    )
+    why = "the part may lie anywhere, or one peg hardly holds"
+    if toolkit is not None and toolkit.flat_jaws is not None:
+        why = "a jaw touches a corner alone"
+    elif toolkit is not None and toolkit.strap_set is not None:
+        why = "no push by hand seats the part"
     return f"{unfit:,} of them {are} for a workshop ({why}) and not shown: --unfit shows them."
 
 
@@ -143,7 +143,7 @@ def tabulate_result(result: Result, entries: Entries, count: int, unit: Unit = M
     What fixtures are ranked by is shown as it counts, all but the last figure to two digits, so that the
     table looks as sorted as it is.
     """
-    if result.toolkit.flat_jaws is not None:
+    if result.toolkit.holds_by_friction:
         return hold_table(result, entries, count, unit)
     from workhold.model.setup import list_length_settings
     from workhold.statics.judging import unfit

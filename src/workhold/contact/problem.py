@@ -79,6 +79,11 @@ class Frame:
             When the lattices are not alike, or the moving carrier slides neither along its rows nor along its
             columns.
         """
+        if toolkit.strap_set is not None:
+            raise InputError(
+                "this is not worked out with straps, under which nothing moves: design for the plate with straps, or take "
+                "a plate with clamps."
+            )
         moving = toolkit.moving
         still = (plate for plate in toolkit.plates if plate.travel is None)
         # Beside a wall a lattice that slides may be all there is.

@@ -25,6 +25,7 @@ from workhold.drawing.carriers import (
     limit_holes_drawn,
 )
 from workhold.drawing.scene import BLACK, GREY, Box, Scene, View, number
+from workhold.drawing.straps_drawn import draw_straps
 from workhold.fixels.contacts import CLAMP_TIP, FLAT_PIN, ROUND_PIN, WALL_END, ContactKind
 from workhold.fixels.pegs import make_peg_outline
 from workhold.fixels.toolkit import Toolkit
@@ -33,6 +34,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
 from workhold.model.setup import find_hole_centers
 from workhold.model.shown import Shown, shown
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -217,7 +219,7 @@ def make_bench(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> Benc
     loops = [[pose.carry(segment) for segment in loop] for loop in workpiece.loop_segments]
     faces = [pose.carry(find_face(workpiece, peg.face)) for peg in fixture.pegs]
     hold = fixture.hold
-    gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
+    gripped = () if not isinstance(hold, JawHold) else (*hold.fixed.segments, *hold.moving.segments)
     contacts = [
         find_contact(toolkit.find_carrier(peg.carrier).contact, (peg.x, peg.y), face)
         for peg, face in zip(fixture.pegs, faces, strict=True)
@@ -277,8 +279,11 @@ def draw_bench(
     draw_part(scene, bench, view, weight)
     for clamp in bench.shown.clamps:
         draw_push(scene, clamp, view, weight)
+    if isinstance(bench.fixture.hold, StrappedHold):
+        draw_straps(scene, bench.fixture.hold, bench.toolkit, view, weight)
     arrows = scene.group("forces")
-    for index in range(len(bench.fixture.pegs)):
+    # Under straps nothing is known of the locators' forces.
+    for index in range(len(bench.fixture.pegs) if bench.fixture.hold is None else 0):
         tail, tip = compute_force_arrow(bench, index, view, longest)
         if hypot(tip[0] - tail[0], tip[1] - tail[1]) > 0:
             arrows.add_arrow(tail, tip, "#ffffff", 5.0 * weight, 14 * weight)
@@ -303,7 +308,7 @@ def draw_part(scene: Scene, bench: Bench, view: View, weight: float) -> None:
             stroke_linecap="butt",
             **{"class": "touched"},
         )
-    if bench.fixture.hold is not None:
+    if isinstance(bench.fixture.hold, JawHold):
         draw_grip(part, bench.fixture.hold, view, weight)
     if bench.own and bench.fixture.hold is None:
         # What clamps and other carriers of their own heights meet, as a thin line beside what pegs meet.
@@ -376,7 +381,7 @@ def draw_inset(
     d = make_outline_path(workpiece.loop_segments, view)
     group.add_path(d, fill=PART_FILL, fill_rule="evenodd")
     hold = fixture.hold
-    gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
+    gripped = () if not isinstance(hold, JawHold) else (*hold.fixed.segments, *hold.moving.segments)
     for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
         group.add_path(make_segment_path(find_face(workpiece, face), view), TOUCHED, 5.0)
     group.add_path(d, BLACK, 1.4)

@@ -35,7 +35,9 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.listing.identity import Entries
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 from workhold.model.result import Result
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.units import MILLIMETRE, Unit
 
@@ -238,11 +240,13 @@ def make_grid(count: int) -> list[Box]:
 
 
 def caption_hold(fixture: Fixture, lengths: LengthUnit) -> str:
-    """Return what the small picture of a part between flat jaws says of it: the force it asks for, or its grip."""
+    """What the small picture of a part held by friction says of it: the force it asks for, or its grip."""
     hold = fixture.hold
     assert hold is not None
     if hold.clamp_needed is not None:
         return f"needs {lengths.unit.format_force(hold.clamp_needed)}"
+    if isinstance(hold, StrappedHold):
+        return "unfit" if hold.is_unfit else "a seat"
     return f"grip {lengths.format_short(hold.grip, 4)}"
 
 
@@ -252,10 +256,8 @@ def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, len
     draw_bench(group, bench, view, weight=0.55, longest=26.0, axes=False)
     fixture, width = bench.fixture, cell.width - 20
     kind = bench.toolkit.find_arrangement(fixture.type, fixture.direction).short_title
-    if fixture.hold is not None:
-        kind = (
-            f"on {lengths.format_short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
-        )
+    if isinstance(fixture.hold, JawHold):
+        kind = f"on {lengths.format_short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
     name = shorten_text(title, 15, width - measure_text(kind, 13, bold=True) - 10, bold=True)
     group.add_text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.add_text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)

@@ -8,6 +8,7 @@ from workhold.drawing.jaw_side import draw_jaw_side
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import GREY, LengthUnit, format_degrees
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, write_fact_or_field, write_heading
+from workhold.drawing.strap_blocks import draw_strap_panel, strap_writers
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.hold_words import (
@@ -20,7 +21,9 @@ from workhold.model.hold_words import (
     write_setup_sentences,
     write_warnings,
 )
+from workhold.model.jaw_hold import JawHold
 from workhold.model.query import Query
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.statics.jaw_program import asked_words
 
@@ -34,13 +37,14 @@ def draw_hold_panel(
     column: TextColumn, fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, lengths: LengthUnit
 ) -> None:
     """Write what to set and what follows, for a picture, with a view from the end of the jaws."""
+    if isinstance(fixture.hold, StrappedHold):
+        draw_strap_panel(column, fixture, lengths)
+        return
     hold, jaws, query = fixture.hold, toolkit.flat_jaws, find_query(fixture)
-    assert hold is not None and jaws is not None
-    column.write_line("Opening S of the jaws", 13, fill=GREY, gap=0.8)
-    column.write_line(lengths.format_length(hold.opening), 30, bold=True, gap=0.4)
-    column.write_fact(
-        "Parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed"
-    )
+    assert isinstance(hold, JawHold) and jaws is not None
+    column.format_length("Opening S of the jaws", 13, fill=GREY, gap=0.8)
+    column.format_length(lengths.format_length(hold.opening), 30, bold=True, gap=0.4)
+    column.write_fact("Parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed")
     column.write_fact("Fixed jaw on", describe_touched_faces(hold.fixed))
     column.write_fact("Moving jaw on", describe_touched_faces(hold.moving))
     column.write_fact("Work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none")
@@ -59,7 +63,7 @@ def draw_hold_panel(
 def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
     """Write the figures that are known, those of forces first."""
     hold, unit = fixture.hold, lengths.unit
-    assert hold is not None
+    assert isinstance(hold, JawHold)
     if hold.clamp_needed is not None:
         column.write_fact("Jaw force needed", unit.format_force(hold.clamp_needed), bold=True)
     elif hold.clamp_needed_each:
@@ -91,7 +95,9 @@ def find_query(fixture: Fixture) -> Query | None:
 
 
 def hold_writers(sheet: Sheet) -> tuple[list[Writer], list[Writer]]:
-    """Return the blocks that a sheet of flat jaws needs beside the plan, and the others."""
+    """The blocks that a sheet of flat jaws, or of straps, needs beside the plan, and the others."""
+    if isinstance(sheet.fixture.hold, StrappedHold):
+        return strap_writers()
     needed: list[Writer] = [write_setting, write_side, write_force]
     return needed, [write_hold_steps, write_hold_loads, write_hold_quality]
 
@@ -104,12 +110,19 @@ def find_sheet_query(sheet: Sheet) -> Query:
 
 def write_setting(column: TextColumn, sheet: Sheet) -> None:
     hold, jaws, lengths = sheet.fixture.hold, sheet.toolkit.flat_jaws, sheet.lengths
-    assert hold is not None and jaws is not None
+    assert isinstance(hold, JawHold) and jaws is not None
     write_heading(column, "Set up")
     column.write_fact(
-        "parallels",
-        lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed",
-        20,
+        "parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed", 20, bold=True
+    )
+    column.write_fact("opening S", lengths.words(hold.opening), 20, bold=True)
+    column.write_fact("on the fixed jaw", describe_touched_faces(hold.fixed), bold=True)
+    column.write_fact("the moving jaw presses", describe_touched_faces(hold.moving), bold=True)
+    column.write_fact("work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none", bold=True)
+    ends = min(hold.fixed.ends[0], hold.moving.ends[0]), max(hold.fixed.ends[1], hold.moving.ends[1])
+    column.write_fact(
+        "gripped along the jaws",
+        f"{lengths.short_number(ends[0], 5)} to {lengths.format_short(ends[1], 5)}",
         bold=True,
     )
     column.write_fact("opening S", lengths.format_length(hold.opening), 20, bold=True)
@@ -134,7 +147,7 @@ def write_side(column: TextColumn, sheet: Sheet) -> None:
     write_heading(column, "From the end of the vise")
     draw_jaw_side(column, sheet.fixture, jaws, query.part_height, sheet.lengths)
     hold = sheet.fixture.hold
-    if hold is not None and hold.above is not None and jaws.height is not None:
+    if isinstance(hold, JawHold) and hold.above is not None and jaws.height is not None:
         free = f"Cut no deeper than {sheet.lengths.format_short(hold.above, 5)} below the top beside a jaw."
         column.write_paragraph(
             free if hold.above else "Nothing stands above the jaws: a tool beside them runs into one.", NOTE
@@ -143,7 +156,7 @@ def write_side(column: TextColumn, sheet: Sheet) -> None:
 
 def write_force(column: TextColumn, sheet: Sheet) -> None:
     hold, unit, jaws = sheet.fixture.hold, sheet.lengths.unit, sheet.toolkit.flat_jaws
-    assert hold is not None and jaws is not None
+    assert isinstance(hold, JawHold) and jaws is not None
     write_heading(column, "Jaw force")
     needed = hold.clamp_needed
     if needed is None:
@@ -183,7 +196,7 @@ def write_hold_steps(column: TextColumn, sheet: Sheet) -> None:
 
 def write_hold_loads(column: TextColumn, sheet: Sheet) -> None:
     query, hold, unit = find_sheet_query(sheet), sheet.fixture.hold, sheet.lengths.unit
-    assert hold is not None
+    assert isinstance(hold, JawHold)
     if not query.loads:
         return
     write_heading(column, f"Loads, and the jaw force that each asks for, {unit.force}")

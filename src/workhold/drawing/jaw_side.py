@@ -11,6 +11,7 @@ from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import BLACK, GREY, Box, LengthUnit, Scene, View
 from workhold.fixels.jaw_pair import JawPair
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 
 __all__ = ["draw_jaw_side"]
 
@@ -30,7 +31,7 @@ def draw_jaw_side(
     ``height`` is that of the part in mm; nothing is drawn where nobody knows it.
     """
     hold = fixture.hold
-    if hold is None or height is None:
+    if not isinstance(hold, JawHold) or height is None:
         return
     opening, low = hold.opening, -hold.parallels
     top = height if jaws.height is None else jaws.compute_top(hold.parallels)
@@ -86,7 +87,7 @@ def draw_bodies(
 def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) -> None:
     """Draw the part and the heights at which the jaws touch it."""
     hold = fixture.hold
-    assert hold is not None
+    assert isinstance(hold, JawHold)
     scene.add_rectangle(view.map_box(Box(0.0, 0.0, hold.opening, height)), PART_FILL, BLACK, 1.6)
     for patch, y in ((hold.fixed, 0.0), (hold.moving, hold.opening)):
         low, high = min(one[2] for one in patch.rectangles), max(one[3] for one in patch.rectangles)
@@ -98,7 +99,7 @@ def draw_heights(
 ) -> None:
     """Dimension the grip, what stands above the jaws, and the parallels, at the right."""
     hold = fixture.hold
-    assert hold is not None
+    assert isinstance(hold, JawHold)
     edge = view((hold.opening * 1.28, 0.0))[0]
     spans = [("above", top, height)] if height > top else []
     if hold.grip > 0:

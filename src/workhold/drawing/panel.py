@@ -171,6 +171,8 @@ def describe_arrangement(arrangement: Arrangement, toolkit: Toolkit) -> str:
     >>> describe_arrangement(plate.arrangements[0], plate)
     'Three locators, two clamps push to the left and downward'
     """
+    if toolkit.strap_set is not None:
+        return "Three locators, straps press the part down"
     clamps, noun = len(arrangement.directions), toolkit.moving.noun
     if toolkit.flat_jaws is not None:
         return "Flat jaws: one side flush on the fixed jaw, held by friction"

@@ -41,6 +41,7 @@ from workhold.drawing.scene import (
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import make_column_letters
 from workhold.geometry.segment import Arc, Point
+from workhold.model.jaw_hold import JawHold
 from workhold.model.shown import ShownCarrier, ShownJaws
 from workhold.model.workpiece import Workpiece
 
@@ -212,10 +213,11 @@ def make_gripped_face_tag(bench: Bench, face_number: int, view: View) -> Label:
     middle of it.
     """
     face = bench.gripped[face_number]
-    assert bench.fixture.hold is not None
-    is_below = face_number in bench.fixture.hold.fixed.segments
+    hold = bench.fixture.hold
+    assert isinstance(hold, JawHold)
+    is_below = face_number in hold.fixed.segments
     x = face.center[0] if isinstance(face, Arc) else face.middle[0]
-    y, turn = (0.0, -pi / 2) if is_below else (bench.fixture.hold.opening, pi / 2)
+    y, turn = (0.0, -pi / 2) if is_below else (hold.opening, pi / 2)
     size = (max(TAG_HEIGHT, measure_text(str(face_number), TAG_SIZE) + 8), TAG_HEIGHT)
     return make_label_around(view((x, y)), turn, size, (9, 16, 26, 42, 60), list_turns_around(8))
 

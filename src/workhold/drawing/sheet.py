@@ -26,6 +26,7 @@ from workhold.drawing.annotation import scale_bar
 from workhold.drawing.bench import Bench, make_bench
 from workhold.drawing.bent_part import draw_bent_page
 from workhold.drawing.carriers import limit_holes_drawn
+from workhold.drawing.hold_cautions import list_hold_cautions
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.path_drawn import PlannedPath
 from workhold.drawing.plan import BOTTOM, LEFT, RIGHT, TOP, draw_plan
@@ -54,7 +55,6 @@ from workhold.drawing.side_view import choose_side_view
 from workhold.drawing.supports_drawn import PlannedSupports
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.hold_words import hold_cautions
 from workhold.model.result import Result
 from workhold.model.setup import part_zero
 from workhold.model.workpiece import Workpiece
@@ -82,7 +82,7 @@ def draw_sheet(
     lengths = LengthUnit.from_typical_length(details.unit, bench.shown.pitch)
     if fixture.hold is not None:
         distances, heights = list[float](), None
-        cautions = [Caution(kind, words) for kind, words in hold_cautions(fixture.hold)]
+        cautions = [Caution(kind, words) for kind, words in list_hold_cautions(fixture)]
     else:
         distances = measure_edge_distances(fixture, workpiece, toolkit)
         cautions = list_cautions(fixture, toolkit, distances, details, lengths)

@@ -14,6 +14,7 @@ from attrs import evolve, field, frozen
 
 from workhold.asking.sheet import SheetQuestion
 from workhold.bending.figures import Bending
+from workhold.drawing.hold_cautions import list_hold_cautions
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences, capitalize_sentence
 from workhold.errors import InputError
@@ -21,7 +22,6 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
-from workhold.model.hold_words import hold_cautions
 from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes, move_to
 from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
@@ -370,7 +370,7 @@ def list_result_cautions(result: Result, rank: int, **asked: Any) -> list[Cautio
     """Return what the setup sheet of one fixture says to beware of; see :func:`collect_sheet_details`."""
     fixture, details = collect_sheet_details(result, rank, **asked)
     if fixture.hold is not None:
-        return [Caution(kind, words) for kind, words in hold_cautions(fixture.hold)]
+        return [Caution(kind, words) for kind, words in list_hold_cautions(fixture)]
     pitch = min(min(carrier.pitch) for carrier in result.toolkit.carriers)
     lengths = LengthUnit.from_typical_length(details.unit, pitch)
     distances = measure_edge_distances(fixture, result.workpiece, result.toolkit)
@@ -415,7 +415,7 @@ def collect_sheet_details(
     from workhold.statics.quality import measure_fixture
 
     question = SheetQuestion(**asked)
-    if result.toolkit.flat_jaws is not None:
+    if result.toolkit.holds_by_friction:
         held, details = hold_details(result, rank, question, result_hash, unit, number, count, listed_as)
         return held, evolve(details, bending=bending, bend=question.bend)
     at, jaw, friction, seating = question.at, question.jaw, question.friction, question.seating

@@ -203,6 +203,10 @@ def pack_copies(
         For a vise, whose one jaw cannot press several parts alike, a plate that holds no copy, and without
         SciPy.
     """
+    if toolkit.strap_set is not None:
+        raise InputError(
+            "copies are not set up with straps: take a plate with clamps or a fence, or set up one part at a time."
+        )
     if toolkit.flat_jaws is not None or len(toolkit.plates) > 1:
         raise InputError(
             f"a {toolkit.noun} holds one part: its {toolkit.moving.noun} presses several copies unlike; take "

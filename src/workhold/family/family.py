@@ -197,6 +197,11 @@ def make_family(
                 f"a {one.query.toolkit.noun} has no holes to keep pegs in: the parts of a family share those, so plan "
                 "one with pegs."
             )
+        if one.query.toolkit.strap_set is not None:
+            raise InputError(
+                "a family of parts is not planned with straps: plan one on a plate with clamps, and strap each part to the "
+                "locators found."
+            )
         if one.query.program is not None:
             raise InputError(f"{one.name} has a program to let pass: a family of parts is planned without.")
         if one.query.rank_by[0] != first.rank_by[0]:

@@ -326,7 +326,7 @@ def load_preset(name: str) -> LoadedToolkit:
     """Return the preset of a name that exists."""
     text = (files("workhold") / "data" / "toolkits" / f"{name}{ENDING}").read_text(encoding="utf-8")
     found = make_described_toolkit(name, tomllib.loads(text))
-    if found.toolkit.flat_jaws is not None:
+    if found.toolkit.holds_by_friction:
         return found
     clamp = found.fields.get(TOP_CLAMP) or TopClamp()
     if clamp.tip_margin is None:

@@ -111,7 +111,8 @@ class Fence(Plate):
             ),
             "Every face that locator and clamp could touch is parallel or square to the side that lies "
             "against the fence: they would have to cover three directions beside the fence's, which takes a "
-            "second clamp, or friction between two flat jaws, in a plain vise such as plain-vise-6-inch.",
+            "second clamp, or friction: between two flat jaws, in a plain vise such as plain-vise-6-inch, or under straps, "
+            "on a plate such as strap-plate-20mm.",
             "Locator and clamp can touch the part on the fence at the same time, but no such pair presses it "
             "against fence and locator.",
         ),

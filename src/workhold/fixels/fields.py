@@ -30,6 +30,7 @@ NAMES: Mapping[str, str] = {
     "fence": "a straight wall that the part lies flush against, one locator and a clamp",
     "flat-jaw": "a vise with one flat jaw, and two pegs on the other",
     "plain-vise": "a vise with two flat jaws, which hold the part by friction, on parallels",
+    "strapped": "three locators on a plate of holes, and strap clamps that hold the part down by friction",
 }
 
 
@@ -372,6 +373,62 @@ SCREW_LEAD = ToolkitField(
     unset="not known",
     belongs_to="screw",
 )
+STRAPS = ToolkitField(
+    "straps",
+    "count",
+    "How many strap clamps press the part down, 1 to 4; 2 if not given.",
+    (PageLabel("Straps", "2", is_usual=True),),
+    default=2,
+    figure="straps",
+    entry="write 1, 2, 3 or 4",
+    allowed=(1, 2, 3, 4),
+    most=4,
+    belongs_to="straps",
+)
+TIP_RADIUS = ToolkitField(
+    "tip_radius",
+    "length",
+    "Radius of a strap's round tip.",
+    (PageLabel("Strap tip radius", "6 mm"),),
+    default=6.0,
+    figure="radius of a strap's tip",
+    is_always_shown=True,
+    entry="write the radius of a strap's tip",
+    belongs_to="straps",
+)
+STRAP_REACH = ToolkitField(
+    "reach",
+    "span",
+    "Of a strap: the least and the most from the middle of its bolt's hole to its tip.",
+    (PageLabel("Straps reach", "20 to 60 mm"),),
+    default=(20.0, 60.0),
+    figure="from a strap's bolt to its tip",
+    entry="write the least and the most from the bolt's hole to the tip, such as [20, 60]",
+    least="0",
+    belongs_to="straps",
+)
+BOLT_PITCH = ToolkitField(
+    "bolt_pitch",
+    "pitch",
+    "Of holes for the straps' bolts: their distance, one for both directions or X,Y; the dowels' own holes take the "
+    "bolts if not given.",
+    (PageLabel("Pitch of bolt holes", "dowel holes"),),
+    figure="pitch of the bolts' holes",
+    unset="the dowels' own",
+    entry="write the distance between holes for bolts as one number, or [x, y]",
+    belongs_to="bolts",
+)
+BOLT_OFFSET = ToolkitField(
+    "bolt_offset",
+    "pitch",
+    "From the first dowel hole to the first hole for a bolt, one length for both directions or X,Y.",
+    (PageLabel("Bolt holes from hole A1", "0"),),
+    default=(0.0, 0.0),
+    figure="first bolt hole from the first dowel hole",
+    least="any",
+    entry="write the distance from the first dowel hole to the first hole for a bolt, or [x, y]",
+    belongs_to="bolts",
+)
 
 # All fields, in the order of the command's help; a kind may show some of them in another way.
 OPTIONS = (
@@ -405,6 +462,11 @@ OPTIONS = (
     STOP_OFFSET,
     MAX_FORCE,
     SCREW_LEAD,
+    STRAPS,
+    TIP_RADIUS,
+    STRAP_REACH,
+    BOLT_PITCH,
+    BOLT_OFFSET,
 )
 ON_A_PLATE = (
     PITCH,

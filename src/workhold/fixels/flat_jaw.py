@@ -114,7 +114,8 @@ class FlatJaw(Toolkit):
             ),
             "Every face is parallel or square to the side that lies against the flat jaw: two pegs against "
             "two sides, or a side and the top, leave the part free to slide; a fence with two clamps holds "
-            "such a part, and so does friction between two flat jaws, in a plain vise such as plain-vise-6-inch.",
+            "such a part, and so does friction: between two flat jaws, in a plain vise such as plain-vise-6-inch, or under "
+            "straps, on a plate such as strap-plate-20mm.",
             "Two pegs can touch the part at the same time, but no such pair presses it against the flat jaw.",
         ),
     )

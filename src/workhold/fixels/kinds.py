@@ -13,6 +13,7 @@ from workhold.fixels.flat_jaw import FlatJaw
 from workhold.fixels.plain_vise import PlainVise
 from workhold.fixels.plate import Plate
 from workhold.fixels.setup_words import PageWords
+from workhold.fixels.strapped import StrapPlate
 from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.fixels.toolkit import Toolkit
 from workhold.fixels.vise import OpeningVise, Vise
@@ -30,7 +31,7 @@ __all__ = [
 ]
 
 KINDS: Mapping[str, type[Toolkit]] = {
-    one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw, PlainVise)
+    one.kind: one for one in (Vise, OpeningVise, Plate, Fence, FlatJaw, PlainVise, StrapPlate)
 }
 # The fields of each kind; kinds that differ in no field share a table.
 TABLES: Mapping[str, FieldTable] = {name: kind.table for name, kind in KINDS.items()}
@@ -46,7 +47,7 @@ ALIASES: Mapping[str, tuple[str, Mapping[str, Any]]] = {
 
 # The kinds of the page by name, in its order, and an alias that says some fields.
 PAGES: Mapping[str, PageWords] = {
-    **{one.kind: one.page for one in (Plate, Fence, Vise, OpeningVise, FlatJaw, PlainVise)},
+    **{one.kind: one.page for one in (Plate, Fence, Vise, OpeningVise, FlatJaw, PlainVise, StrapPlate)},
     "gripper": PageWords("Gripper, one column a jaw", "Close gripper", {**Vise.page.start, "columns": 1}),
 }
 

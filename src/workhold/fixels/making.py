@@ -147,6 +147,9 @@ def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
             return row.check_value
         case "holes":
             return partial(convert_holes, carriers=row.carriers, noun=row.carrier_noun)
+        case "pitch" if row.default is None:
+            both: Callable[[Any], Any] = optional(pair)
+            return both
         case form:
             return CONVERTERS[form]
 
@@ -289,7 +292,7 @@ def refuse_out_of_bounds(toolkit: Any, row: ToolkitField) -> None:
                     "more, and then the upper one, in mm above the plane on which the part lies."
                 )
             refuse_long(row.words, value[1])
-        case "pitch":
+        case "pitch" if value is not None:
             refuse_long(row.words, max(value))
         case "flat":
             object.__setattr__(toolkit, row.name, resolve_flat(value, toolkit.peg_radius))
@@ -324,7 +327,7 @@ def make_lattice_carrier(toolkit: Any, name: str, **others: Any) -> Carrier:
     size = toolkit.pitch, toolkit.columns, toolkit.rows, toolkit.peg_radius, toolkit.peg_radius
     rows = (row for row in toolkit.table.fields if row.form == "holes")
     blocked = tuple(one for row in rows for one in getattr(toolkit, row.name) if one.carrier == name)
-    return evolve(Carrier(name, *size, flat=toolkit.flat, blocked=blocked), **others)
+    return evolve(Carrier(name, *size, flat=getattr(toolkit, "flat", None), blocked=blocked), **others)
 
 
 def make_wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Carrier:

@@ -29,6 +29,7 @@ from workhold.fixels.carrier import Carrier, Heights, Travel
 from workhold.fixels.contacts import CLAMP_TIP, Arrangement, ContactKind, Symmetry
 from workhold.fixels.jaw_pair import JawPair
 from workhold.fixels.setup_words import Datum, PageWords, SetupWords
+from workhold.fixels.strap_set import StrapSet
 from workhold.fixels.support_hardware import PinLimits, SupportPads, TopClamp
 from workhold.fixels.table import FieldTable, ToolkitField
 from workhold.units import Unit
@@ -229,6 +230,16 @@ class Toolkit:
     def flat_jaws(self) -> JawPair | None:
         """The two flat jaws that hold the part by friction; None where pegs hold it."""
         return None
+
+    @property
+    def strap_set(self) -> StrapSet | None:
+        """The straps that hold the part down by friction; None where there are none."""
+        return None
+
+    @property
+    def holds_by_friction(self) -> bool:
+        """Whether friction keeps the part in its place, between flat jaws or under straps."""
+        return self.flat_jaws is not None or self.strap_set is not None
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:

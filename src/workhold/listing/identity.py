@@ -288,7 +288,7 @@ def make_entries(result: Result, with_unfit: bool = False) -> Entries:
     asked for, or if there are no others.
     """
     table = result.table
-    if result.toolkit.flat_jaws is not None:
+    if result.toolkit.holds_by_friction:
         return make_entries_of_holds(result, with_unfit)
     blocks = (table.take(slice(start, start + BLOCK)) for start in range(0, len(table), BLOCK))
     bad = np.concatenate(
@@ -303,7 +303,7 @@ def make_entries(result: Result, with_unfit: bool = False) -> Entries:
 
 
 def make_entries_of_holds(result: Result, with_unfit: bool) -> Entries:
-    """Return the entries of what flat jaws hold: each by itself, as they differ in parallels, stop or side."""
+    """The entries of what friction holds: each by itself, as they differ in parallels, stop, side or holes."""
     bad = np.array([hold.is_unfit for hold in result.holds], np.bool_)
     shown = np.arange(len(bad)) if with_unfit or bad.all() else np.flatnonzero(~bad)
     return Entries(shown, np.zeros(len(shown), np.int64), len(bad) - len(shown))

@@ -24,6 +24,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import LoopShape, compute_signed_area, encloses
 from workhold.geometry.segment import Arc, Box, Line, Point, Segment
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 from workhold.model.shown import MOST_HOLES, Shown, ShownCarrier, shown
 from workhold.model.workpiece import Workpiece
 
@@ -290,7 +291,7 @@ def clamps(seen: Shown, sizes: BodySizes) -> Iterator[FixtureBody]:
 def flat_jaws(seen: Shown, fixture: Fixture, toolkit: Toolkit, sizes: BodySizes) -> Iterator[FixtureBody]:
     """Two flat jaws with the parallels between them and the work stop, and the bed that they stand on."""
     jaws, hold = toolkit.flat_jaws, fixture.hold
-    if seen.jaws is None or jaws is None or hold is None:
+    if seen.jaws is None or jaws is None or not isinstance(hold, JawHold):
         return
     low = 0.0 - hold.parallels
     top = sizes.top if jaws.height is None else jaws.compute_top(hold.parallels)

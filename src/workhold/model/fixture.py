@@ -16,7 +16,7 @@ from workhold.errors import InputError
 from workhold.fixels.carrier import JAWS, WALL, make_hole_name
 from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
-from workhold.model.straps import StrapHardware
+from workhold.model.straps import StrapHardware, StrappedHold
 
 if TYPE_CHECKING:
     import build123d
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Load, Zone
     from workhold.model.result import Result
-    from workhold.model.straps import StrappedHold
     from workhold.model.support_request import Faces, SpatialLoad
     from workhold.model.support_triples import Supports
     from workhold.model.workpiece import Workpiece
@@ -175,7 +174,8 @@ class Fixture:
         makes no difference between fixtures.
     seating : what else its pegs can do with the part, a ``model.seating.Seating``; None where that was not
         asked.
-    hold : how flat jaws hold it by friction, without pegs; None of other fixtures.
+    hold : how friction holds it, between flat jaws without pegs, or under straps against locators; None of other
+        fixtures.
     passing, asking : of a file that is verified, what it says of where the program's tools pass, and of the
         forces that they ask for; None of all others.
     """
@@ -189,7 +189,7 @@ class Fixture:
     pair: Pair | None = None
     listed: Listed | None = field(default=None, eq=False)
     seating: Any = field(default=None, eq=False)
-    hold: JawHold | None = None
+    hold: JawHold | StrappedHold | None = None
     passing: Any = field(default=None, eq=False, repr=False)
     asking: Any = field(default=None, eq=False, repr=False)
 
@@ -198,7 +198,7 @@ class Fixture:
 
     def __repr__(self) -> str:
         which = "Fixture" if self.listed is None else f"Fixture {self.listed.rank} of {self.listed.count}"
-        if self.hold is not None:
+        if isinstance(self.hold, JawHold):
             stop = f", stop {self.hold.stop}" if self.hold.stop else ""
             on = f"parallels of {self.hold.parallels:g} mm{stop}"
             return f"<{which}, {self.type}: on {on} at {self.pose.theta_deg:.3f} degrees>"
@@ -230,7 +230,7 @@ class Fixture:
         """Of a vise the x distance in mm from the left jaw's last column to the right jaw's first, of flat jaws the
         distance between them; else None.
         """
-        if self.hold is not None:
+        if isinstance(self.hold, JawHold):
             return self.hold.opening
         return self.travel if {peg.carrier for peg in self.pegs} == set(JAWS) else None
 

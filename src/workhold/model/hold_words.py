@@ -71,7 +71,7 @@ def force_words(force: float, unit: Unit) -> str:
 def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterator[str]:
     """How to set it up, a sentence for each thing to do, in their order."""
     hold, jaws = fixture.hold, query.toolkit.flat_jaws
-    assert hold is not None and jaws is not None
+    assert isinstance(hold, JawHold) and jaws is not None
     if hold.parallels:
         yield f"Take the parallels of {short(hold.parallels, unit)}, one beside each jaw"
     else:
@@ -112,7 +112,7 @@ def describe_coefficients(query: Query) -> str:
 def hold_reasons(fixture: Fixture, unit: Unit) -> list[str]:
     """What speaks for a hold, in the order in which holds are ranked."""
     hold = fixture.hold
-    assert hold is not None
+    assert isinstance(hold, JawHold)
     turn = fixture.pose.written_deg
     square = abs((turn + 45.0) % 90.0 - 45.0) < 1e-6
     angle = "as drawn" if abs(turn) < 1e-6 else f"turned by {round(turn, 3):g}°"

@@ -96,6 +96,9 @@ def count_spare_holes(
 
     None stands for any number, where the plate has no end. What cannot be moved has zeros.
     """
+    if toolkit.strap_set is not None:
+        # Bolts and tips have their places beside the locators' as they are listed.
+        return (0, 0), (0, 0)
     plate = toolkit.plates[0]
     along, across = (
         (min(used), None if count is None else count - 1 - max(used))

@@ -32,6 +32,7 @@ from workhold.model.quality import (
     words,
 )
 from workhold.model.requirements import Load, Restrictions, Tolerance
+from workhold.model.straps import strap_ranking
 from workhold.model.workpiece import Workpiece
 
 __all__ = ["Query"]
@@ -109,9 +110,11 @@ class Query(SearchQuestion):
     max_location_error : list only fixtures whose location error is at most this, in mm; None for any.
     thickness : of the part in mm, for how far pegs bend, and for what flat jaws grip; None where it is not known, and
         of a solid, which says it itself.
-    friction : coefficients of friction by name where flat jaws hold the part, such as {"jaw": 0.15}; None for the
-        usual ones (``model.friction``).
+    friction : coefficients of friction by name where flat jaws or straps hold the part, such as {"jaw": 0.15}; None
+        for the usual ones (``model.friction``).
     safety : factor on the loads there; None for the usual 2.
+    weight : of the part in N, without that factor, where straps hold it; None counts as nothing.
+    strapped : for so many of the best seats of a plate with straps these are sought; None for 20.
 
     Raises
     ------
@@ -143,6 +146,8 @@ class Query(SearchQuestion):
         self.refuse_loads_across()
         if self.toolkit.flat_jaws is not None:
             object.__setattr__(self, "rank_by", hold_ranking(self.rank_by))
+        elif self.toolkit.strap_set is not None:
+            object.__setattr__(self, "rank_by", strap_ranking(self.rank_by))
         else:
             asked = self.is_loaded, pairs, self.seating is not None, self.toolkit.reaching is not None
             object.__setattr__(self, "rank_by", resolve_ranking(self.rank_by, *asked))
@@ -181,22 +186,25 @@ class Query(SearchQuestion):
             )
 
     def refuse_loads_across(self) -> None:
-        """Refuses what only flat jaws feel where there are none, and what only pegs do where there are.
+        """Refuses what only friction feels where none holds the part, and what only pegs do where it does.
 
-        Of loads that act out of the plane flat jaws have to know how thick the part is.
+        Of loads that act out of the plane flat jaws have to know how thick the part is, and straps of all.
         """
         across = next((number for number, load in enumerate(self.loads, 1) if load.upward), None)
+        self.refuse_beside_straps()
+        if self.toolkit.strap_set is not None:
+            return
         if self.toolkit.flat_jaws is None:
             if across is not None:
                 raise InputError(
                     f"load {across} acts along z, which nothing keeps the part from following but friction: hold it "
-                    "in a plain vise, or find supports and a clamp on top."
+                    "in a plain vise or under straps, or find supports and a clamp on top."
                 )
             for name, value in (("friction", self.friction), ("safety factor", self.safety)):
                 if value is not None:
                     raise InputError(
-                        f"the {name} counts where flat jaws hold the part; pegs are reckoned without friction: leave "
-                        "it out, or take a plain vise."
+                        f"the {name} counts where flat jaws or straps hold the part; pegs are reckoned without "
+                        "friction: leave it out, or take a plain vise or a plate with straps."
                     )
             return
         if across is not None and self.part_height is None:
@@ -217,6 +225,30 @@ class Query(SearchQuestion):
         for asked, is_given in only_of_pegs.items():
             if is_given:
                 raise InputError(f"{asked} is asked of pegs, and flat jaws have none: leave it out.")
+
+    def refuse_beside_straps(self) -> None:
+        """Refuses what only straps feel where there are none, and what is not reckoned where there are."""
+        only_of_straps = {"a weight": self.weight, "a number of strapped seats": self.strapped}
+        if self.toolkit.strap_set is None:
+            for asked, value in only_of_straps.items():
+                if value is not None:
+                    raise InputError(
+                        f"{asked} counts where straps hold the part: leave it out, or take a plate with straps."
+                    )
+            return
+        if self.loads and self.part_height is None:
+            raise InputError("how thick the part is decides what straps hold: give its thickness.")
+        not_done = {
+            "a program": (self.program is not None, "keep the straps off the cut by keep-out zones"),
+            "a jaw force": (self.jaw_force is not None, "the force that each strap needs is told for loads"),
+            "seating": (
+                self.seating is not None,
+                "a hand's push that seats the part is told for the best seats",
+            ),
+        }
+        for asked, (is_given, help) in not_done.items():
+            if is_given:
+                raise InputError(f"{asked} is not looked at with straps: leave it out; {help}.")
 
     @property
     def part_height(self) -> float | None:

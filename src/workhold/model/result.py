@@ -19,6 +19,7 @@ from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptB
 from workhold.model.query import Query
 from workhold.model.search_report import Proof
 from workhold.model.seating import Seating
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 
 if TYPE_CHECKING:
@@ -67,7 +68,7 @@ class Result:
     pairs, seats : with two clamps, how many pairs of clamps hold the part, and at how many seats and pairs of
         directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, of as many of the first fixtures as there are entries.
-    holds : of flat jaws, how each fixture holds the part; none of other toolkits.
+    holds : of flat jaws and straps, how each fixture holds the part; none of other toolkits.
     least_effective_error : in mm, the least effective location error of all fixtures that are fit and without
         warning, or as near to that as any is; steps count from it (``model.first_choice``). None where the
         order has no steps, and of results from before there were any.
@@ -85,7 +86,7 @@ class Result:
     seats: int | None = None
     seating: tuple[Seating, ...] = field(default=(), hash=False)
     least_effective_error: float | None = None
-    holds: tuple[JawHold, ...] = field(default=(), hash=False)
+    holds: tuple[JawHold | StrappedHold, ...] = field(default=(), hash=False)
 
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
@@ -145,7 +146,7 @@ class Result:
         return self.seated(made, index)
 
     def seated(self, made: Fixture, index: int) -> Fixture:
-        """The fixture of an index with its seating, where that is known, and how flat jaws hold it."""
+        """The fixture of an index with its seating, where that is known, and how friction holds it."""
         if index < len(self.holds):
             hold = self.holds[index]
             return evolve(made, hold=hold, quality={**made.quality, **hold.figures})

@@ -35,6 +35,7 @@ from workhold.geometry.symmetry import rotate_vectors
 from workhold.limits import MOST_STEPS
 from workhold.model.clamps import ShownClamp, find_clamping_direction, list_shown_clamps
 from workhold.model.fixture import Fixture, Peg
+from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 from workhold.model.setup import LengthSetting, list_length_settings
 from workhold.model.wall_ends import standouts
@@ -355,7 +356,7 @@ class Shown:
 
 def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
     """What shows of a toolkit that holds a workpiece; raises as :func:`find_shown_beside`."""
-    if fixture.hold is not None:
+    if isinstance(fixture.hold, JawHold):
         return shown_between(workpiece, fixture, toolkit)
     return find_shown_beside(bound_placed_part(workpiece, fixture.pose), fixture, toolkit)
 
@@ -363,7 +364,7 @@ def shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Shown:
 def shown_between(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> Shown:
     """What shows of two flat jaws and a workpiece between them."""
     jaws, hold, part = toolkit.flat_jaws, fixture.hold, bound_placed_part(workpiece, fixture.pose)
-    assert jaws is not None and hold is not None
+    assert jaws is not None and isinstance(hold, JawHold)
     width, opening = jaws.width, hold.opening
     thick = JAW * width if jaws.thickness is None else jaws.thickness
     wide = min(PARALLEL * opening, WIDEST_PARALLEL)

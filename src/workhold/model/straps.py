@@ -9,17 +9,68 @@ place : a bolt's hole with the point on which its strap's tip presses.
 
 from __future__ import annotations
 
-from math import isfinite
+from collections.abc import Sequence
+from math import inf, isfinite
 from typing import Any
 
 from attrs import field, frozen
 
 from workhold.errors import InputError
+from workhold.fixels.strap_set import StrapSet
 from workhold.limits import convert_real, refuse_long
+from workhold.model.first_choice import has_house_order
+from workhold.model.quality import Figure
 
-__all__ = ["MOST_STRAPS", "HandPush", "Strap", "StrapHardware", "StrappedHold"]
+__all__ = [
+    "MOST_STRAPS",
+    "STRAP_FIGURES",
+    "USUAL_SEATS",
+    "HandPush",
+    "Strap",
+    "StrapHardware",
+    "StrappedHold",
+    "strap_ranking",
+]
 
 MOST_STRAPS = 4
+# For so many of the best seats straps are sought where nobody says.
+USUAL_SEATS = 20
+# The figures of straps, in the order in which they are shown.
+STRAP_FIGURES = (
+    Figure(
+        "clamp_needed",
+        "N",
+        False,
+        "The force of each strap at its tip that the worst load asks for, with the safety factor.",
+        0,
+    ),
+    Figure("slip_reserve", "", True, "What a strap is rated for, over the force needed.", 2),
+)
+# What seats are ranked by, those that no hand's push seats last.
+STRAP_RANKING = ("square", "clamp_needed", "location_error", "edge_distance")
+# Further figures of seats that they can be ranked by.
+SEAT_FIGURES = ("end_distance", "smallest_face")
+
+
+def strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
+    """What seats under straps are ranked by, from figures as a user writes them; the usual order for None.
+
+    An order that fixtures with clamps have stands for the usual one.
+
+    >>> strap_ranking(["location-error"])
+    ('location_error',)
+    """
+    keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or STRAP_RANKING]
+    if has_house_order(keys) or keys == ["warnings"]:
+        return STRAP_RANKING
+    known = (*STRAP_RANKING, *SEAT_FIGURES)
+    for key, name in zip(keys, names or STRAP_RANKING, strict=True):
+        if key not in known:
+            words = ", ".join(one.replace("_", "-") for one in known)
+            raise InputError(f"{name!r} is no figure of straps to rank by: choose among {words}.")
+    if len(set(keys)) < len(keys):
+        raise InputError(f"the figures to rank by, {', '.join(names or ())}, name one twice: name each once.")
+    return tuple(keys)
 
 
 @frozen
@@ -61,6 +112,11 @@ class StrapHardware:
         refuse_long("the reach of a strap", most)
         refuse_long("the tip radius of a strap", self.tip_radius)
 
+    @classmethod
+    def of(cls, straps: StrapSet) -> StrapHardware:
+        """The straps of a plate."""
+        return cls(straps.count, straps.tip_radius, straps.reach, straps.max_force)
+
 
 @frozen
 class Strap:
@@ -68,7 +124,7 @@ class Strap:
 
     Parameters
     ----------
-    hole : column and row of its bolt, as the fixture's pegs count them.
+    hole : column and row of its bolt, as the fixture's pegs count them, or in a lattice of bolts' own.
     at : of its tip, in mm in the plate's frame.
     height : of the face on which it presses above the plate, in mm, as high as its heel stands.
     """
@@ -102,22 +158,54 @@ class StrappedHold:
     ----------
     straps : in order of their holes; none where they find no places.
     push : by hand; None where none presses the part against all locators.
-    places : how many places for a strap there are.
+    places : how many places for a strap there are; None where none was sought.
     clamp_needed_each : the force in N of each strap that each load asks for; None where none is enough.
     max_force : that a strap is rated for, in N; None where nobody says.
+    is_looked_at : whether a push was sought, and straps where there are loads; only for the best seats they are.
     """
 
     straps: tuple[Strap, ...]
     push: HandPush | None
-    places: int
+    places: int | None
     clamp_needed_each: tuple[float | None, ...] = ()
     max_force: float | None = None
+    is_looked_at: bool = True
 
     @property
     def clamp_needed(self) -> float | None:
         """The force in N of each strap that the worst load asks for; None without loads, and where none is enough."""
         each = [one for one in self.clamp_needed_each if one is not None]
         return max(each) if each and len(each) == len(self.clamp_needed_each) else None
+
+    @property
+    def is_unfit(self) -> bool:
+        """Whether no hand's push seats the part."""
+        return self.is_looked_at and self.push is None
+
+    @property
+    def slip_reserve(self) -> float | None:
+        """What a strap is rated for over what is needed; None where one of both is not known."""
+        if self.max_force is None or self.clamp_needed is None:
+            return None
+        return self.max_force / self.clamp_needed if self.clamp_needed > 0 else inf
+
+    @property
+    def holds_nothing(self) -> bool:
+        """Whether straps were sought, and found no places, or hold not all loads with any force."""
+        if not self.is_looked_at or self.places is None:
+            return False
+        return not self.straps or None in self.clamp_needed_each
+
+    @property
+    def is_beyond_rating(self) -> bool:
+        """Whether the loads ask for more than a strap is rated for."""
+        return self.slip_reserve is not None and self.slip_reserve < 1
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """The figures that are known, by their keys."""
+        named = {figure.key: getattr(self, figure.key) for figure in STRAP_FIGURES}
+        return {key: float(value) for key, value in named.items() if value is not None and value != inf}
 
     def as_data(self) -> dict[str, Any]:
         """What files and other programs are given."""

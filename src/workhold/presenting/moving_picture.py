@@ -20,8 +20,10 @@ from workhold.drawing.carriers import (
     limit_holes_drawn,
 )
 from workhold.drawing.scene import Scene, View, number
+from workhold.drawing.straps_drawn import draw_straps
 from workhold.geometry.segment import Point
 from workhold.model.clamps import ShownClamp
+from workhold.model.straps import StrappedHold
 
 __all__ = ["draw_ground", "draw_peg", "measure_draw_back", "add_moving_group", "find_clamping_directions"]
 
@@ -68,6 +70,8 @@ def draw_ground(scene: Scene, bench: Bench, view: View) -> None:
     if bench.shown.jaws is not None:
         draw_flat_jaws(scene.group("jaws"), bench.shown.jaws, view)
     draw_part(scene, bench, view, 1.0)
+    if isinstance(bench.fixture.hold, StrappedHold):
+        draw_straps(scene, bench.fixture.hold, bench.toolkit, view, 1.0)
     for clamp in bench.shown.clamps:
         draw_push(
             add_moving_group(scene, view, clamp.clamping if clamp.hole is None else None), clamp, view, 1.0

@@ -20,6 +20,7 @@ from workhold.errors import InputError
 from workhold.files.atomic import write_bytes
 from workhold.files.replacing import refuse_output
 from workhold.listing.identity import make_entries
+from workhold.model.jaw_hold import JawHold
 from workhold.model.moved_setup import move_fixture_by_holes
 from workhold.model.setup import part_zero
 from workhold.model.support_triples import ChosenSupports
@@ -292,7 +293,7 @@ def make_model_file(fixture: Fixture, result: Result, ending: str, settings: dic
         fixture = move_fixture_by_holes(fixture, toolkit, find_placing(fixture, result, at))
     elif at is not None:
         chosen = chosen.standing_at(at)
-    if fixture.hold is not None and ending in (".csv", ".dxf"):
+    if isinstance(fixture.hold, JawHold) and ending in (".csv", ".dxf"):
         raise InputError(
             f"a {ending} of a set-up is of pegs, and a {toolkit.noun} has none: let the name end in .step, or take the "
             "setup sheet."

@@ -33,6 +33,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Line, Point, Segment, bounding_box
 from workhold.model.clamps import ShownClamp
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 from workhold.model.shown import Dimension, Shown
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.moving_picture import (
@@ -264,7 +265,7 @@ def draw_small(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
     outline = "".join(f"{make_polyline_path(loop, view)}Z" for loop in loops)
     scene.add_path(outline, fill=PART_FILL, fill_rule="evenodd")
     hold = fixture.hold
-    gripped = () if hold is None else (*hold.fixed.segments, *hold.moving.segments)
+    gripped = () if not isinstance(hold, JawHold) else (*hold.fixed.segments, *hold.moving.segments)
     for face in dict.fromkeys((*(peg.face for peg in fixture.pegs if peg.beside is None), *gripped)):
         scene.add_path(make_polyline_path([pose.carry(find_face(workpiece, face))], view), TOUCHED, 3.6)
     scene.add_path(outline, BLACK, 1.2)

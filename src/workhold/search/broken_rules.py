@@ -402,7 +402,7 @@ def find_program_line_in_the_way(query: Query) -> int | None:
 
     None without a program, where it passes none, and where there are no pegs.
     """
-    if query.program is None or query.toolkit.flat_jaws is not None:
+    if query.program is None or query.toolkit.holds_by_friction:
         return None
     try:
         problem = Problem.of(query.without_program)

@@ -34,11 +34,13 @@ from workhold.listing.results import (
 )
 from workhold.model.first_choice import list_ranking_figures
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
 from workhold.model.notes import STAGES, NoFixture, NoPlace, Note, round_to_two_digits
 from workhold.model.quality import FIGURES, WARNINGS, find_ranked_number, read_asked_ranking
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Restrictions, Tolerance
 from workhold.model.result import Result
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.search.broken_rules import find_program_line_in_the_way
 from workhold.search.cells import run_blocks
@@ -204,6 +206,10 @@ def answer(
         from workhold.search.jaw_search import find_fixtures_between_jaws
 
         return send_to_sink(find_fixtures_between_jaws(query, progress, cancel), sink)
+    if query.toolkit.strap_set is not None:
+        from workhold.search.strapped_search import find_strapped_fixtures
+
+        return send_to_sink(find_strapped_fixtures(query, workers, progress, cancel), sink)
     if query.seating is not None:
         search = partial(answer, threads=workers, preview=preview)
         return answer_with_seating(
@@ -492,11 +498,18 @@ def explore(
         figures = dict(result[0].quality) if len(result) else {}
         fit = bool(figures) and not unfit(result.table.quality[:1], result.query.tolerance)[0]
         if result.holds:
-            fit = not result.holds[0].is_unfit and result.holds[0].full_contact
+            fit = is_held_fit(result.holds[0])
         held = held_share(result[0], result.workpiece) if len(result) else 0.0
         known = None if count is None or not len(result) else round_to_two_digits(count)
         found = dict(result.found) if known is None else {}
         yield Explored(name, found, figures, reason, fit, held, known)
+
+
+def is_held_fit(hold: JawHold | StrappedHold) -> bool:
+    """Whether friction holds a part as a workshop would."""
+    if isinstance(hold, JawHold):
+        return not hold.is_unfit and hold.full_contact
+    return not hold.is_unfit and not hold.holds_nothing
 
 
 def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
@@ -505,7 +518,7 @@ def held_share(fixture: Fixture, workpiece: Workpiece) -> float:
     sides, back = (x1 - x0, y1 - y0), fixture.pose.inverse
     longer = int(sides[1] > sides[0])
     points = [(peg.x, peg.y) for peg in fixture.pegs]
-    if fixture.hold is not None:
+    if isinstance(fixture.hold, JawHold):
         jaws = (fixture.hold.fixed, 0.0), (fixture.hold.moving, fixture.hold.opening)
         points = [(x, y) for patch, y in jaws for x in patch.ends]
     places = [float(back.apply(x, y)[longer]) for x, y in points]

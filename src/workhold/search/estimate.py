@@ -65,7 +65,7 @@ def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -
     None where they are surely few, beside a wall, with rules for their seating or for each by itself, and once
     ``cancel`` is set.
     """
-    held_flat = WALL_END in query.toolkit.contacts or query.toolkit.flat_jaws is not None
+    held_flat = WALL_END in query.toolkit.contacts or query.toolkit.holds_by_friction
     if held_flat or query.seating is not None or query.is_sifted:
         return None
     query = evolve(query, best=None)

@@ -19,6 +19,7 @@ from workhold.contact.problem import Problem
 from workhold.errors import InputError, join_words
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
+from workhold.limits import thread_count
 from workhold.listing.asked import are_as_asked
 from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
@@ -40,6 +41,8 @@ from workhold.search.broken_rules import (
 from workhold.search.design import answer
 from workhold.search.flush_search import FlushSearch
 from workhold.search.jaw_search import RULES, JawSearch
+from workhold.search.seat_search import find_seats
+from workhold.search.strapped_search import within_error
 from workhold.search.toolkit_search import is_round
 from workhold.search.wall_search import WallSearch
 from workhold.search.wall_shares import LatticePairSearch
@@ -183,7 +186,11 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
     query = evolve(query, rank_by="warnings")
     toolkit, alone = query.toolkit, query.toolkit.travels == 1
     ways = [held_in(query, way) for way in toolkit.ways]
-    if toolkit.flat_jaws is not None:
+    if toolkit.strap_set is not None:
+        # Loads choose straps, and no seat is there or not because of them.
+        query = evolve(query, loads=())
+        found = [count_removals_of_seats(query, threads)]
+    elif toolkit.flat_jaws is not None:
         found = [count_removals_between_jaws(query)]
     elif WALL_END in toolkit.contacts:
         found = [count_removals_beside_wall(way, alone) for way in ways]
@@ -206,9 +213,53 @@ def count_removals_between_jaws(query: Query) -> Removals:
     return Removals(first, removals, None)
 
 
+def count_removals_of_seats(query: Query, threads: int | None) -> Removals:
+    """What the rules leave of the seats of three locators on a plate, and which rule takes how many."""
+    toolkit, asked = query.toolkit, query.restrictions
+    bare = evolve(
+        query,
+        toolkit=toolkit.without(toolkit.limits),
+        restrictions=Restrictions(),
+        contact_margin=0.0,
+        max_location_error=None,
+    )
+    steps: list[tuple[bool, str, dict[str, Any]]] = [
+        (bool(asked.avoid), "faces to avoid", {"restrictions": Restrictions(avoid=asked.avoid)}),
+        (bool(asked.zones), "keep-out zones", {"restrictions": evolve(asked, angles=(), touch=())}),
+        (bool(asked.angles), "angles of the part", {"restrictions": evolve(asked, touch=())}),
+        (bool(toolkit.limits), toolkit.wording.holes, {"toolkit": toolkit}),
+        (query.contact_margin > 0.0, "contact margin", {"contact_margin": query.contact_margin}),
+        (bool(asked.touch), "faces to touch", {"restrictions": asked}),
+        (
+            query.max_location_error is not None,
+            "largest location error",
+            {"max_location_error": query.max_location_error},
+        ),
+    ]
+    before = first = count_seats(bare, threads)
+    removals = []
+    for is_asked, rule, changed in steps:
+        if is_asked:
+            bare = evolve(bare, **changed)
+            after = min(count_seats(bare, threads), before)
+            removals.append(Removal(rule, before, after))
+            before = after
+    return Removals(first, removals, None)
+
+
+def count_seats(query: Query, threads: int | None) -> int:
+    """How many seats a query has; 0 where nothing is left to touch."""
+    try:
+        return len(within_error(find_seats(query, thread_count(threads)).table, query))
+    except InputError:
+        return 0
+
+
 def no_contacts(ways: Sequence[Query]) -> Note:
     """Why nothing touches a part at the same time in any way of a toolkit."""
     wording = ways[0].toolkit.wording
+    if ways[0].toolkit.strap_set is not None:
+        return NoFixture("pair", wording)
     if WALL_END not in ways[0].toolkit.contacts and all(is_round(Problem.of(way)) for way in ways):
         return NoFixture("shape", wording)
     return Remark(f"No {wording.four} can touch the part at the same time.")

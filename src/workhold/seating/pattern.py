@@ -144,6 +144,8 @@ def refuse_unseated(toolkit: Toolkit) -> None:
     words = "the seating is worked out only"
     if toolkit.flat_jaws is not None:
         raise InputError(f"{words} for round pegs: flat jaws have none.")
+    if toolkit.strap_set is not None:
+        raise InputError(f"{words} where a jaw or a clamp closes: under straps a hand pushes the part home.")
     if not toolkit.closes_at_once:
         raise InputError(
             f"{words} for one clamp: with two clamps you push the part against its locators by hand."

@@ -220,6 +220,10 @@ class Touched:
             distances[on_wall & ~np.isnan(distances)] = np.inf
         if pegs.shape[1] == PEGS:
             return ContactMatrices(points, normals, ends, edges, inverses, inverses[:, 3, :, None])
+        if pegs.shape[1] == LOCATORS:
+            # Under straps nothing moves.
+            inverses[:, :LOCATORS] = invert_locator_matrices(wrenches(points, normals, self.length))
+            return ContactMatrices(points, normals, ends, edges, inverses, np.zeros((*pegs.shape[:2], 0)))
         closing = pair_reactions(points, normals, self.pushes(pose, carriers), self.length)
         inverses[:, :LOCATORS, :LOCATORS] += invert_locator_matrices(wrenches(points, normals, self.length))
         inverses[:, 3] += compute_working_forces(closing)

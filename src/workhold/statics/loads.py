@@ -302,9 +302,10 @@ def load_cases(
         For a fixture of another part or toolkit, a jaw force or a coefficient that is negative or not finite,
         and a jaw that is not known.
     """
-    if fixture.hold is not None:
+    if fixture.hold is not None or toolkit.strap_set is not None:
+        what = "straps" if toolkit.strap_set is not None else "flat jaws"
         raise InputError(
-            "flat jaws hold it by friction: how hard they must press under loads is found with the design, in the fixture's "
+            f"{what} hold it by friction: how hard they must press under loads is found with the design, in the fixture's "
             "hold.clamp_needed_each."
         )
     fixture.refuse_others(workpiece, toolkit)

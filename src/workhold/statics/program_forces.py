@@ -353,7 +353,7 @@ def find_cutting_need(
     jaw : what closes the vise, see :func:`workhold.statics.loads.jaw_stiffness`.
     """
     program = result.query.program
-    if program is None or program.forces is None or result.toolkit.flat_jaws is not None:
+    if program is None or program.forces is None or result.toolkit.holds_by_friction:
         return None
     force = result.query.jaw_force if jaw_force is None else jaw_force
     row = result.table.take(slice(index, index + 1))

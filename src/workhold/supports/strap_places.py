@@ -2,8 +2,8 @@
 
 The tip stands wholly on the part's upper face and off its zones, and the part's foot lies wholly under it, so that the
 strap bends nothing. Of a ring the points at its least, middle and greatest radius are looked at, every 30 degrees from
-the plate's x axis. A bolt is as thick as the holes are
-wide; it stands beside the part or in an opening of it, and in no locator's hole.
+the plate's x axis. A bolt is as thick as the dowels' holes are wide; it stands beside the part or in an opening of it,
+and in no locator's hole. Where bolts have holes of their own it stands clear of the locators.
 """
 
 from __future__ import annotations
@@ -62,23 +62,25 @@ def find_strap_places(
     )
     bottom = TouchableFace.of(request.bottom or outline) if request.bottom is None or request.bottom else None
     plate = next(carrier for carrier in toolkit.carriers if carrier.has_lattice and carrier.travel is None)
+    bolts = plate if toolkit.strap_set is None else toolkit.strap_set.bolts
     if top is None or bottom is None:
         return StrapPlaces(np.zeros((0, 2), np.int64), np.zeros((0, 2)))
     part = FaceBorders(tuple(loop_segments(loop) for loop in outline))
     x0, y0, x1, y1 = workpiece.bounds
     corners = np.array(fixture.pose.apply(np.array([x0, x1, x0, x1]), np.array([y0, y0, y1, y1])))
     reach = straps.reach[1]
-    first, pitch = np.array(plate.place(0, 0)), np.array(plate.pitch)
+    first, pitch = np.array(bolts.place(0, 0)), np.array(bolts.pitch)
     low = np.floor((corners.min(axis=1) - reach - first) / pitch).astype(np.int64)
     high = np.ceil((corners.max(axis=1) + reach - first) / pitch).astype(np.int64)
-    if plate.columns is not None:
-        low[0], high[0] = max(low[0], 0), min(high[0], plate.columns - 1)
-    if plate.rows is not None:
-        low[1], high[1] = max(low[1], 0), min(high[1], plate.rows - 1)
+    if bolts.columns is not None:
+        low[0], high[0] = max(low[0], 0), min(high[0], bolts.columns - 1)
+    if bolts.rows is not None:
+        low[1], high[1] = max(low[1], 0), min(high[1], bolts.rows - 1)
     if any(not one.has_lattice and one.travel is None for one in toolkit.carriers):
         # Rows count from a fence, and there are none behind it.
         low[1] = max(low[1], 0)
-    taken = {(peg.column, peg.row) for peg in fixture.pegs if peg.carrier == plate.name}
+    pegs = [peg for peg in fixture.pegs if peg.carrier == plate.name]
+    taken = {(peg.column, peg.row) for peg in pegs if bolts is plate}
     holes = [
         (column, row)
         for column in range(low[0], high[0] + 1)
@@ -86,12 +88,16 @@ def find_strap_places(
         if (column, row) not in taken and not plate.is_blocked(column, row)
     ]
     hole = np.array(holes, np.int64).reshape(-1, 2)
-    points = np.column_stack(plate.place(hole[:, 0], hole[:, 1])).reshape(-1, 2)
+    points = np.column_stack(bolts.place(hole[:, 0], hole[:, 1])).reshape(-1, 2)
     back = fixture.pose.inverse
     beside = np.column_stack(back.apply(*points.T))
     # In the outline, and in no opening of it, a point is within an odd number of loops.
     is_under = part.contains(beside).sum(axis=1) % 2 == 1
     free = ~is_under & (part.distance(beside).min(axis=1) >= plate.peg_radius - GAP_SLACK)
+    if bolts is not plate:
+        at_pegs = np.array([(peg.x, peg.y) for peg in pegs]).reshape(-1, 2)
+        apart = np.hypot(*np.moveaxis(points[:, None] - at_pegs[None], 2, 0))
+        free &= (apart >= 2 * plate.peg_radius - GAP_SLACK).all(axis=1)
     hole, points = hole[free], points[free]
     turns = 2 * pi / WAYS * np.arange(WAYS)
     radii = np.unique(np.linspace(*straps.reach, RADII))

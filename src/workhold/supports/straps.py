@@ -39,7 +39,15 @@ from workhold.statics.strapped import StrappedPart, StrapsOnPart
 from workhold.supports.hand_push import find_hand_push
 from workhold.supports.strap_places import StrapPlaces, find_strap_places
 
-__all__ = ["NO_LOADS", "StrapQuestion", "ask_for_straps", "find_straps", "usual_request"]
+__all__ = [
+    "NO_LOADS",
+    "StrapQuestion",
+    "StrapSearch",
+    "ask_for_straps",
+    "find_straps",
+    "question_of",
+    "usual_request",
+]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -51,6 +59,8 @@ KERN_SLACK = 1e-7
 # By how much, of a force, sets are no better than one another.
 ALIKE = 1e-9
 LOCATORS = 3
+# What stands for the thickness in mm of a part that nothing loads, where nobody says.
+UNKNOWN_HEIGHT = 1.0
 NO_LOADS = "straps are chosen by the force that loads ask for: give one load or more."
 
 
@@ -78,6 +88,11 @@ class StrapQuestion:
     def plate(self, fixture: Fixture) -> Carrier:
         """The plate of a fixture, with the holes for locators and bolts."""
         return next(one for one in toolkit_of(fixture).carriers if one.has_lattice and one.travel is None)
+
+    def bolts(self, fixture: Fixture) -> Carrier:
+        """The holes for bolts on the plate of a fixture."""
+        straps = toolkit_of(fixture).strap_set
+        return self.plate(fixture) if straps is None else straps.bolts
 
     def locators(self, fixture: Fixture) -> list[Peg]:
         """The pegs of a fixture that stand still, among them the ends of a contact with a wall.
@@ -113,6 +128,23 @@ def usual_request(
     """
     usual = SupportRequest.of(query.workpiece, thickness, tip_radius=tip_radius)
     return evolve(usual, top_zones=tuple(zones))
+
+
+def question_of(query: Query) -> StrapQuestion:
+    """What a query whose toolkit has straps asks of them; tips stand off its keep-out zones as locators do."""
+    straps = query.toolkit.strap_set
+    assert straps is not None
+    # Without loads nobody need know how thick the part is.
+    height = None if query.part_height is not None else UNKNOWN_HEIGHT
+    request = usual_request(query, height or query.thickness, straps.tip_radius, query.restrictions.zones)
+    return StrapQuestion(
+        StrapHardware.of(straps),
+        request,
+        tuple(SpatialLoad.of(load) for load in query.loads),
+        query.friction,
+        query.safety_factor,
+        query.weight or 0.0,
+    )
 
 
 def find_straps(
@@ -258,14 +290,7 @@ class StrapSearch:
 
     def best(self, cancel: Event | None = None) -> StrappedHold:
         """The straps that need the least force."""
-        workpiece = self.query.workpiece
-        segments = [self.fixture.pose.carry(one) for one in workpiece.segments[: workpiece.outer_count]]
-        hold = StrappedHold(
-            straps=(),
-            push=find_hand_push(segments, self.part.touched, self.part.inward),
-            places=len(self.places),
-            max_force=self.asked.straps.max_force,
-        )
+        hold = evolve(self.unloaded(), places=len(self.places))
         chosen = SetSearch(self).least(self.asked.straps.count, cancel)
         if chosen is None:
             return hold
@@ -279,6 +304,13 @@ class StrapSearch:
             for k in chosen
         )
         return evolve(hold, straps=straps, clamp_needed_each=each)
+
+    def unloaded(self) -> StrappedHold:
+        """The push by hand alone, without any straps."""
+        workpiece = self.query.workpiece
+        segments = [self.fixture.pose.carry(one) for one in workpiece.segments[: workpiece.outer_count]]
+        push = find_hand_push(segments, self.part.touched, self.part.inward)
+        return StrappedHold((), push, None, (), self.asked.straps.max_force)
 
     @cached_property
     def kern(self) -> Array:

@@ -26,6 +26,12 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
             f"{found.push.direction_deg:g} degrees from its x axis, so that it touches all locators"
         )
     if found.straps:
+        bolts = asked.bolts(fixture)
+        where = [
+            f"{bolts.place_name(*one.hole)} with the tip at ({unit.number(one.at[0])}, {unit.number(one.at[1])})"
+            for one in found.straps
+        ]
+        steps.append(f"Bolt the straps in {' and in '.join(where)}, in {unit.abbreviation} of the plate")
         steps.append(
             "Set the heels "
             f"{' and '.join(unit.format_length(one) for one in sorted({one.height for one in found.straps}))} high, as "
@@ -56,7 +62,11 @@ def reckoned_with(asked: StrapQuestion) -> str:
 def list_warnings(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> list[str]:
     """What to beware of, sentences with a full stop."""
     out = []
-    if not found.straps:
+    if not found.is_looked_at:
+        return [
+            "no push and no straps were looked for at this seat, as it is not among the best: ask for more of them."
+        ]
+    if not found.straps and found.places is not None:
         out.append(
             f"there are no places where {asked.straps.count} of these straps press the part flat on the plate: take another "
             "number, smaller tips or a longer reach."

@@ -144,8 +144,9 @@ class BallContact:
         return x - pose.x, y - pose.y
 
     def place(self, pose: BallPose) -> Point:
-        """Return the peg's centre in the toolkit's frame, in mm."""
-        travelled = pose.travels[self.travel]
+        """The peg's centre in the toolkit's frame, in mm."""
+        # Under straps nothing moves.
+        travelled = pose.travels[self.travel] if pose.travels else arb(0)
         return self.hole[0] + self.way[0] * travelled, self.hole[1] + self.way[1] * travelled
 
     def compute_center_in_part(self, pose: BallPose) -> Point:

@@ -81,7 +81,7 @@ class JawJudge:
     def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
         """Yield what is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
         hold = fixture.hold
-        if hold is None:
+        if not isinstance(hold, JawHold):
             yield "it is not held by flat jaws"
             return
         if not any(abs(hold.parallels - one) <= AGREEMENT for one in self.jaws.parallels):
@@ -96,8 +96,8 @@ class JawJudge:
             yield f"it is the same as fixture {first + 1}"
 
     def order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
-        """Yield a fault for a fixture that what comes first puts before the one before it."""
-        rows = [rank_cautions(one.hold) for one in fixtures if one.hold is not None]
+        """A fault for a fixture that what comes first puts before the one before it."""
+        rows = [rank_cautions(one.hold) for one in fixtures if isinstance(one.hold, JawHold)]
         for place, (before, after) in enumerate(pairwise(rows), 2):
             if after < before:
                 yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"

@@ -25,7 +25,7 @@ from workhold.errors import InputError
 from workhold.files.result.fixture_forms import check_seating, read_head_seatings
 from workhold.files.result.forms import Head
 from workhold.files.result.hold_text import is_hold
-from workhold.files.result.holds import HoldPart, read_holds
+from workhold.files.result.holds import AnyHoldPart, read_holds
 from workhold.files.result.notes import note_faults, read_notes
 from workhold.files.result.parts import HEAD, check_head, describe_columns_from_head, parse_head, read_parts
 from workhold.fixels.fields import OPTIONS
@@ -257,8 +257,8 @@ def read_listing(path: str | Path) -> Listing:
         types, notes = query.toolkit.types, read_notes(head, query)
         return Listing(
             query,
-            read_jaw_fixtures(taken, query)
-            if query.toolkit.flat_jaws is not None
+            held_by_friction(taken, query)
+            if query.toolkit.holds_by_friction
             else complete_fixtures(taken, seatings, ToolkitRules.from_query(query), query, path),
             read_counts_by_type(head.counts, "counts", types),
             read_counts_by_type(head.found, "found", types, head.counts),
@@ -280,15 +280,15 @@ def read_listing(path: str | Path) -> Listing:
         raise InputError(f"{path} cannot be verified: {error}") from error
 
 
-def read_jaw_fixtures(taken: Any, query: Query) -> list[Fixture]:
-    """Return the fixtures of flat jaws; refuse others."""
-    if not isinstance(taken, list) or not all(isinstance(one, HoldPart) for one in taken):
+def held_by_friction(taken: Any, query: Query) -> list[Fixture]:
+    """The fixtures of flat jaws, or of straps; refuse others."""
+    if not isinstance(taken, list) or not all(isinstance(one, AnyHoldPart) for one in taken):
         raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
     return [part.to_fixture(query.toolkit, query.unit_force) for part in taken]
 
 
-def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[HoldPart] | Columns, list[Any]]:
-    """Return the head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
+def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[AnyHoldPart] | Columns, list[Any]]:
+    """The head of a file, its fixtures, or their columns, and the seating of the first of a file in columns."""
     try:
         if is_archive(path):
             # All of it is read once, to compare its checksums.
@@ -300,8 +300,8 @@ def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[HoldP
     return *read_parts(path, read_any_fixtures), []
 
 
-def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[HoldPart]:
-    """Return the fixtures with pegs, or such as flat jaws hold."""
+def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[AnyHoldPart]:
+    """Fixtures with pegs, or such as flat jaws hold."""
     iterator = iter(items)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
@@ -309,7 +309,7 @@ def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[
 
 
 def complete_fixtures(
-    fixtures: list[Fixture] | list[HoldPart] | Columns,
+    fixtures: list[Fixture] | list[AnyHoldPart] | Columns,
     seatings: Sequence[Any],
     hardware: ToolkitRules,
     query: Query,

@@ -39,6 +39,7 @@ from workhold.verification.seat import SeatBalance
 from workhold.verification.seat_clamps import SeatOnPlate
 from workhold.verification.seating import SeatingJudge
 from workhold.verification.stock_walk import find_stock_faults
+from workhold.verification.strapped import StrapJudge
 from workhold.verification.tolerances import AGREEMENT, Finding, judge_slack, number
 from workhold.verification.tool_walk import find_program_fault
 from workhold.verification.touching import judge_touching
@@ -343,8 +344,10 @@ def verify_file(path: str | Path, progress: Progress = ignore_progress) -> Verif
 
 
 def verify_holds(listing: Listing, progress: Progress) -> Verification:
-    """Return what is shown of a result of flat jaws."""
-    judge, unproven = JawJudge(listing.query), list[Unproven]()
+    """What is shown of a result of flat jaws, or of straps."""
+    is_strapped = listing.query.toolkit.strap_set is not None
+    judge = StrapJudge(listing.query) if is_strapped else JawJudge(listing.query)
+    unproven = list[Unproven]()
     for place, fixture in enumerate(listing.fixtures):
         fault = next(judge.find_faults(fixture, place), None)
         if fault is not None:
@@ -364,7 +367,7 @@ def verify_holds(listing: Listing, progress: Progress) -> Verification:
 
 def verify_listing(listing: Listing, progress: Progress = ignore_progress) -> Verification:
     query, everything = listing.query, listing.fixtures
-    if query.toolkit.flat_jaws is not None:
+    if query.toolkit.holds_by_friction:
         return verify_holds(listing, progress)
     judge, seating = Judge(query), SeatingJudge(query)
     turning = PartRotations.from_workpiece(query.workpiece)

@@ -12,6 +12,7 @@ from attrs import asdict, evolve
 from workhold.drawing.bench import make_bench
 from workhold.drawing.panel import describe_arrangement
 from workhold.files.result.hold_text import hold_entry
+from workhold.files.result.strapped_text import strapped_entry
 from workhold.files.result.writer import make_own_outlines_entry, make_proof_entry
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Arc, Segment
@@ -24,10 +25,14 @@ from workhold.model.quality import FIGURES
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import list_length_settings
 from workhold.model.shown import Shown
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.presenting.data import convert_finite, describe_helps, describe_solid
 from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
 from workhold.presenting.zoomed_picture import draw_zoomed
+from workhold.supports.straps import question_of
+from workhold.supports.words_of_straps import list_steps, list_warnings
+from workhold.units import MILLIMETRE
 
 __all__ = [
     "describe_arrangements",
@@ -132,7 +137,7 @@ def describe_rows(
     workpiece: Workpiece,
     toolkit: Toolkit,
     ranks: Iterable[int],
-    holds: Sequence[JawHold] = (),
+    holds: Sequence[JawHold | StrappedHold] = (),
 ) -> list[dict[str, Any]]:
     """Describe fixtures as rows; ``ranks`` are those of the table's fixtures, and ``holds`` how flat jaws hold them."""
     longest = find_edgeless_distance(workpiece, toolkit)
@@ -173,9 +178,10 @@ def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longe
 
 
 def hold_answer(fixture: Fixture) -> dict[str, Any]:
-    """Describe how flat jaws hold a part, as a result file does, with what to do and to beware of in words."""
+    """Describe how friction holds a part, as a result file does, with what to do and to beware of in words."""
     hold = fixture.hold
-    assert hold is not None
+    if not isinstance(hold, JawHold):
+        return strapped_answer(fixture)
     entry = hold_entry(fixture)
     names = ("parallels", "stop", "fixed", "moving", "warnings")
     return {
@@ -186,10 +192,30 @@ def hold_answer(fixture: Fixture) -> dict[str, Any]:
     }
 
 
-def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
-    """Return the heading of a fixture in a list: its type, or which parallels it lies on and where the stop is."""
+def strapped_answer(fixture: Fixture) -> dict[str, Any]:
+    """Describe how straps hold a part, as a result file does, with how to set them up and what to beware of in words."""
     hold = fixture.hold
-    if hold is None:
+    assert isinstance(hold, StrappedHold)
+    entry, words = strapped_entry(fixture), dict[str, list[str]]()
+    if fixture.listed is not None:
+        asked = question_of(fixture.listed.result.query)
+        words = {
+            "steps": [f"{step}." for step in list_steps(hold, fixture, asked, MILLIMETRE)],
+            "warnings": list_warnings(hold, asked, MILLIMETRE),
+        }
+    names = ("straps", "push", "places", "looked_at")
+    return {
+        **{name: entry[name] for name in names},
+        "unfit": hold.is_unfit,
+        "clamp_needed_each": list(hold.clamp_needed_each),
+        **words,
+    }
+
+
+def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
+    """The heading of a fixture in a list: its type, or which parallels it lies on and where the stop is."""
+    hold = fixture.hold
+    if not isinstance(hold, JawHold):
         return toolkit.find_arrangement(fixture.type, fixture.direction).heading
     on = f"On {hold.parallels:g} mm parallels" if hold.parallels else "On the bed"
     return f"{on}, stop {hold.stop}" if hold.stop else on

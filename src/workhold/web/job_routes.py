@@ -235,6 +235,8 @@ async def fixtures(
     held = result.workpiece, result.toolkit, (page + 1).tolist(), holds
     rows = await asyncio.to_thread(describe_rows, table, *held)
     bad = unfit_of(table.quality, result.query.tolerance).tolist()
+    if holds:
+        bad = [hold.is_unfit for hold in holds]
     rows = [
         row | {"like": more, "unfit": none, "caught": get_capture_range(result, row["rank"])}
         for row, more, none in zip(rows, like, bad, strict=True)

@@ -17,6 +17,7 @@ from workhold.asking.program import CuttingQuestion, ProgramQuestion, StockQuest
 from workhold.errors import InputError
 from workhold.files.declared_forms import add_declared_fields, collect_given_values
 from workhold.files.result.hold_text import make_need_entry
+from workhold.model.jaw_hold import JawHold
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
 from workhold.units import MILLIMETRE
@@ -243,7 +244,7 @@ def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
     from workhold.statics.program_forces import find_cutting_need
 
     hold, program = (result[index].hold, result.query.program) if result.holds else (None, None)
-    if hold is not None and hold.program_need is not None and program is not None:
+    if isinstance(hold, JawHold) and hold.program_need is not None and program is not None:
         asked = hold.program_need
         return {**make_need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
     need = find_cutting_need(result, index)

@@ -86,12 +86,14 @@ def explain_result(payload: AskedQueries, order: Order) -> Explanation:
 def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Order) -> AskedQueries:
     """Make the queries of a request, and check what can be checked before the search."""
     from workhold.contact.problem import Problem
+    from workhold.search.seat_search import make_locating_query
     from workhold.search.seated import refuse_unasked
 
     form, most_segments = payload
     queries = form.to_queries(most_segments)
     if len(queries) == 1:
-        Problem.of(queries[0][1])
+        asked = queries[0][1]
+        Problem.of(asked if asked.toolkit.strap_set is None else make_locating_query(asked))
         if queries[0][1].seating is not None:
             refuse_unasked(queries[0][1])
     return AskedQueries.from_queries(queries)

@@ -85,10 +85,11 @@ class ColumnsSink:
 
 
 def refuse_holds(query: Query, path: str | Path) -> None:
-    """Refuse what flat jaws hold, which has no pegs to stand in columns."""
-    if isinstance(query, Query) and query.toolkit.flat_jaws is not None:
+    """Refuse what friction holds, which has more than pegs, or none, to stand in columns."""
+    if isinstance(query, Query) and query.toolkit.holds_by_friction:
+        has = "straps as well" if query.toolkit.strap_set is not None else "none"
         raise InputError(
-            f"{path}: a file in columns is of pegs, and a {query.toolkit.noun} has none: let the name end in .json or .csv."
+            f"{path}: a file in columns is of pegs, and a {query.toolkit.noun} has {has}: let the name end in .json or .csv."
         )
 
 

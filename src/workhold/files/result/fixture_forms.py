@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from workhold.errors import InputError
 from workhold.files.result.forms import FormPart, Head, Pair, describe_first_fault
 from workhold.files.result.holds import HoldPart
+from workhold.files.result.strapped import StrappedSeatPart
 from workhold.model.pose import Pose
 from workhold.model.quality import SEATING_FIGURES
 from workhold.model.result import Result
@@ -287,4 +288,4 @@ class FixturePart(FormPart):
 class ResultFile(Head):
     """A result file; lengths in mm, angles in degrees."""
 
-    fixtures: list[FixturePart] | list[HoldPart]
+    fixtures: list[FixturePart] | list[HoldPart] | list[StrappedSeatPart]

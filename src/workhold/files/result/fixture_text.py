@@ -310,12 +310,12 @@ def list_seating_values(result: Result) -> list[list[float]]:
 
 
 def hold_csv_text(result: Result) -> Iterator[str]:
-    """Yield the same of what flat jaws hold."""
+    """The same of what friction holds."""
     from workhold.files.result.hold_text import hold_columns, hold_rows
 
     lines = io.StringIO()
     table = csv.writer(lines, lineterminator="\n")
-    table.writerow(hold_columns())
+    table.writerow(hold_columns(result.toolkit))
     table.writerows(["" if value is None else value for value in row] for row in hold_rows(result))
     yield lines.getvalue()
 
@@ -327,7 +327,7 @@ def write_result_csv(result: Result) -> Iterator[str]:
     pictures.
     """
     toolkit, carriers = result.toolkit, result.toolkit.carriers
-    if toolkit.flat_jaws is not None:
+    if toolkit.holds_by_friction:
         yield from hold_csv_text(result)
         return
     yield ",".join(list_column_names(result)) + "\n"

@@ -229,9 +229,9 @@ class UndecidedPart(FormPart):
     """One entry of the proof's list of what is not decided; columns and rows may be negative."""
 
     type: str
-    segments: list[int] = Field(min_length=4, max_length=5)
-    columns: list[int] = Field(min_length=4, max_length=5)
-    rows: list[int] = Field(min_length=4, max_length=5)
+    segments: list[int] = Field(min_length=3, max_length=5)
+    columns: list[int] = Field(min_length=3, max_length=5)
+    rows: list[int] = Field(min_length=3, max_length=5)
     theta_deg: float = Field(ge=0, lt=360)
     reach_deg: float | None = Field(default=None, ge=0)
     reason: str = Field(min_length=1)

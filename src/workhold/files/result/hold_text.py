@@ -1,8 +1,9 @@
-"""The text of what flat jaws hold: a line of JSON of a result file, or a row of a spreadsheet, for each fixture.
+"""The text of what friction holds: a line of JSON of a result file, or a row of a spreadsheet, for each fixture.
 
 A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the parallels and
 the side of the work stop. Figures that follow from these are written, too. :mod:`workhold.files.result.holds` reads
-the lines; it is a module of its own because pydantic takes long to import.
+the lines; it is a module of its own because pydantic takes long to import. Of straps
+:mod:`workhold.files.result.strapped_text` has the text.
 """
 
 from __future__ import annotations
@@ -11,8 +12,15 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from workhold.files.result.strapped_text import (
+    is_strapped,
+    strapped_columns,
+    strapped_entry,
+    strapped_rows,
+)
+from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.jaw_hold import HOLD_FIGURES, Patch, ProgramNeed
+from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch, ProgramNeed
 from workhold.model.result import Result
 
 __all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold", "make_need_entry"]
@@ -33,9 +41,10 @@ def round_figure_for_file(value: Any) -> Any:
 
 
 def hold_entry(fixture: Fixture) -> dict[str, Any]:
-    """Return a fixture that flat jaws hold, as it is written."""
+    """A fixture that friction holds, as it is written."""
     hold, pose = fixture.hold, fixture.pose
-    assert hold is not None
+    if not isinstance(hold, JawHold):
+        return strapped_entry(fixture)
 
     def patch_entry(patch: Patch) -> dict[str, Any]:
         rectangles = [[round_length_for_file(end) for end in one] for one in patch.rectangles]
@@ -77,23 +86,28 @@ def hold_lines(result: Result) -> Iterator[str]:
 
 
 def is_hold(fixture: Any) -> bool:
-    """Return whether a fixture in a file is one of flat jaws."""
-    return isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
+    """Whether a fixture in a file is one that friction holds."""
+    return is_strapped(fixture) or (
+        isinstance(fixture, dict) and "moving" in fixture and "pegs" not in fixture
+    )
 
 
 BEFORE_FIGURES = ("number", "type", "theta_deg", "x", "y", "jaw_separation", "parallels", "stop")
 AFTER_FIGURES = ("full_contact", "faces_fixed", "faces_moving", "warnings")
 
 
-def hold_columns() -> list[str]:
-    """Return the names of the columns of :func:`hold_rows`."""
+def hold_columns(toolkit: Toolkit) -> list[str]:
+    """The names of the columns of :func:`hold_rows`, in a toolkit."""
+    if toolkit.strap_set is not None:
+        return strapped_columns(toolkit.strap_set.count)
     return [*BEFORE_FIGURES, *(figure.key for figure in HOLD_FIGURES), *AFTER_FIGURES]
 
 
 def hold_rows(result: Result) -> Iterator[list[Any]]:
-    """Yield a row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where
-    not known.
-    """
+    """A row for each fixture, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+    if result.toolkit.strap_set is not None:
+        yield from strapped_rows(result, result.toolkit.strap_set.count)
+        return
     for number, fixture in enumerate(result, 1):
         entry = hold_entry(fixture)
         pose, quality = entry["pose"], entry["quality"]

@@ -1,4 +1,4 @@
-"""Fixtures of flat jaws in a result file, checked and read.
+"""Fixtures that friction holds in a result file, checked and read: those of flat jaws, and of straps.
 
 :mod:`workhold.files.result.hold_text` writes them.
 """
@@ -14,14 +14,17 @@ from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
 from workhold.files.result.forms import FormPart, describe_first_fault
+from workhold.files.result.strapped import StrappedSeatPart, check_strapped, table_of_strapped
+from workhold.files.result.strapped_text import is_strapped
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.pose import Pose
 from workhold.model.query import Query
+from workhold.model.straps import StrappedHold
 
-__all__ = ["HoldPart", "make_jaw_holds", "read_holds", "make_table_of_holds"]
+__all__ = ["AnyHoldPart", "HoldPart", "make_jaw_holds", "read_holds", "make_table_of_holds"]
 
 LARGEST = 1e9
 Whole = Annotated[int, Field(ge=0)]
@@ -116,29 +119,38 @@ class HoldPart(FormPart):
         )
 
 
-def read_holds(fixtures: Iterable[Any], path: Path) -> list[HoldPart]:
-    """Return the fixtures of a file.
+AnyHoldPart = HoldPart | StrappedSeatPart
+
+
+def read_holds(fixtures: Iterable[Any], path: Path) -> list[AnyHoldPart]:
+    """The fixtures of a file.
 
     Raises
     ------
     InputError
         Naming the first key that is missing or cannot be used.
     """
-    out = []
+    out = list[AnyHoldPart]()
     for number, fixture in enumerate(fixtures, 1):
+        form = StrappedSeatPart if is_strapped(fixture) else HoldPart
         try:
-            out.append(HoldPart.model_validate(fixture))
+            out.append(form.model_validate(fixture))
         except ValidationError as error:
             key, reason = describe_first_fault(error)
             raise InputError(f"{path}: fixture {number} cannot be used: {key}: {reason}.") from error
     return out
 
 
-def make_jaw_holds(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple[JawHold, ...]:
-    """Return how flat jaws hold the part in each fixture of a file; refuse faces that there are not."""
+def make_jaw_holds(parts: Sequence[AnyHoldPart], query: Query, path: Path) -> tuple[JawHold | StrappedHold, ...]:
+    """How friction holds the part in each fixture of a file; refuse faces that there are not, and other kinds."""
+    strapped = [part for part in parts if isinstance(part, StrappedSeatPart)]
+    jaws = [part for part in parts if isinstance(part, HoldPart)]
+    if (strapped if query.toolkit.flat_jaws is not None else jaws) or (strapped and jaws):
+        raise InputError(f"{path}: its fixtures are not those of a {query.toolkit.noun}.")
+    check_strapped(strapped, query, path)
     faces = {face.number for face in query.workpiece.numbered.faces}
     names = query.toolkit.types
-    for number, part in enumerate(parts, 1):
+    for number, part in enumerate(jaws, 1):
         if part.type not in names:
             raise InputError(
                 f"{path}: fixture {number} cannot be used: its type is not {' or '.join(names)}."
@@ -150,8 +162,11 @@ def make_jaw_holds(parts: Sequence[HoldPart], query: Query, path: Path) -> tuple
     return tuple(part.hold(query.toolkit, query.unit_force) for part in parts)
 
 
-def make_table_of_holds(parts: Sequence[HoldPart]) -> FixtureTable:
-    """Return the table of the fixtures of a file."""
+def make_table_of_holds(given: Sequence[AnyHoldPart], toolkit: Toolkit) -> FixtureTable:
+    """The table of the fixtures of a file in a toolkit."""
+    if toolkit.strap_set is not None:
+        return table_of_strapped([part for part in given if isinstance(part, StrappedSeatPart)])
+    parts = [part for part in given if isinstance(part, HoldPart)]
     return make_flat_jaw_table(
         [radians(part.pose.theta_deg) for part in parts],
         [(part.pose.x, part.pose.y) for part in parts],

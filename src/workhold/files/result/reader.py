@@ -23,7 +23,7 @@ from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
 from workhold.files.result.fixture_forms import add_seatings, check_seating
 from workhold.files.result.hold_text import is_hold
-from workhold.files.result.holds import HoldPart, make_jaw_holds, make_table_of_holds, read_holds
+from workhold.files.result.holds import AnyHoldPart, holds_of, read_holds, table_of_holds
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,
@@ -98,23 +98,19 @@ def read_result(path: str | Path) -> Result:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
     head, columns = read_parts(path, collect_any_fixtures)
     query = check_query(head, path)
-    if isinstance(columns, list) != (query.toolkit.flat_jaws is not None):
+    if isinstance(columns, list) != query.toolkit.holds_by_friction:
         if isinstance(columns, list) or len(columns.types):
             raise InputError(f"{path}: its fixtures are not those of a {query.toolkit.noun}.")
         columns = []
     if isinstance(columns, list):
-        return evolve(
-            make_result_from_counts(make_table_of_holds(columns), head, query, path),
-            holds=make_jaw_holds(columns, query, path),
-        )
-    result = make_result_from_counts(
-        add_missing_figures(check_table(columns, query, path), query), head, query, path
-    )
+        holds = make_jaw_holds(columns, query, path)
+        return evolve(make_result_from_counts(make_table_of_holds(columns, query.toolkit), head, query, path), holds=holds)
+    result = make_result_from_counts(add_missing_figures(check_table(columns, query, path), query), head, query, path)
     return add_seatings(result, columns.seating, path)
 
 
-def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> Columns | list[HoldPart]:
-    """Return the fixtures as arrays; such as flat jaws hold as they are."""
+def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> Columns | list[AnyHoldPart]:
+    """Fixtures as arrays; such as friction holds as they are."""
     iterator = iter(fixtures)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)

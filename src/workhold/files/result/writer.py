@@ -74,7 +74,7 @@ def write_result_text(result: Result) -> Iterator[str]:
     yield from write_head_json(make_head(result, with_pieces=False), result.query.program, ",\n")
     yield ',\n"fixtures": ['
     separator, count = "\n", 0
-    if result.toolkit.flat_jaws is not None:
+    if result.toolkit.holds_by_friction:
         yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(hold_lines(result)))
         yield "\n]}\n"
         return

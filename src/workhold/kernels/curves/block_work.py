@@ -291,3 +291,24 @@ def add_listed(
         return NO_ROOM_FOR_RECORDS
     write_record(out[count], standing, pegs, angle[0], separation, reach)
     return count + 1
+
+
+@inner
+def add_seat(out: Array, count: int, angle: Angle, reach: float, work: BlockWork) -> int:
+    """Appends the record of three standing pegs in place, for a search in which nothing moves.
+
+    The place of a fourth peg repeats the first one. Result as for :func:`add_listed`.
+    """
+    pegs = work.pegs
+    work.stats[CANDIDATES] += 1
+    if count == out.shape[0]:
+        return NO_ROOM_FOR_RECORDS
+    place_peg(pegs[3], pegs[0, PEG_X], pegs[0, PEG_Y], int(pegs[0, PEG_FEATURE]), 0.0, 0.0, 0.0)
+    write_record(out[count], 3.0, pegs, angle[0], 0.0, reach)
+    return count + 1
+
+
+@inner
+def moves_nothing(features: Features) -> bool:
+    """Whether three standing pegs are sought alone, and no moving one."""
+    return features.moving[0] == features.moving[1]

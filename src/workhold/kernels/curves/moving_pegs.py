@@ -29,7 +29,7 @@ from workhold.kernels.base.tables import Limits
 from workhold.kernels.contact.location_bounds import is_beyond
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
 from workhold.kernels.contact.rules import minor_band, outward_normal
-from workhold.kernels.curves.block_work import BlockWork, add_listed
+from workhold.kernels.curves.block_work import BlockWork, add_listed, add_seat, moves_nothing
 from workhold.kernels.curves.piece_bounds import HAIR
 
 # mm. Points this far beyond an arc's ends count as points of it: more than ``END_SLACK`` and rounding.
@@ -273,11 +273,15 @@ def locators_beyond(angle: Angle, work: BlockWork) -> bool:
 def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: BlockWork) -> int:
     """Tries every moving peg for the three standing pegs in place, and appends the fixtures to ``out``.
 
+    Where nothing moves the three pegs are appended by themselves.
+
     Returns
     -------
     how many records there are, -1 when there is no room for another
     """
     pegs, triple, lattice, limits, features = work.pegs, work.triple, work.lattice, work.limits, work.features
+    if moves_nothing(features):
+        return add_seat(out, count, angle, reach, work)
     _, cx, cy = angle
     pitch_y, length, rows = lattice.pitch_y, limits.wrench_length, features.rows
     base = cx * pegs[0, PEG_Y] - cy * pegs[0, PEG_X] + lattice.row_offset

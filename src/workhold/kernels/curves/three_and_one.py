@@ -58,6 +58,7 @@ from workhold.kernels.curves.block_work import (
     BlockWork,
     block_work,
     is_among,
+    moves_nothing,
     place_triple,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
@@ -283,7 +284,7 @@ def three_and_one_cells(
         if stats[STOPPED] != 0:
             break
         low, high, farthest = edges[cell], edges[cell + 1], np.inf
-        if not counting:
+        if not counting and not moves_nothing(features):
             farthest = farthest_right(features, low, high) - limits.gap + GAP_SLACK + HAIR
         number = write_pieces(
             low,

@@ -129,7 +129,7 @@ export function request() {
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
-    ...(state.toolkit?.parallels !== undefined && !state.part?.solid ? { thickness: state.supports?.thickness ?? state.sheet?.thickness ?? null } : {}),
+    ...((state.toolkit?.parallels !== undefined || state.toolkit?.straps !== undefined) && !state.part?.solid ? { thickness: state.supports?.thickness ?? state.sheet?.thickness ?? null } : {}),
     ...(state.program ? { program: programRequest(state.program) } : {}),
   };
 }

@@ -1,0 +1,114 @@
+"""Tables and sentences for the terminal of seats under straps."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from workhold.cli.table import Table
+from workhold.presenting.figure_words import rounded
+from workhold.units import Unit
+
+if TYPE_CHECKING:
+    from workhold.listing.identity import Entries
+    from workhold.model.fixture import Fixture
+    from workhold.model.result import Result
+
+__all__ = ["first_strap_sentence", "strap_table", "strapped_fixture_tables"]
+
+
+def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Table:
+    """Tabulate the best seats: locators, bolts, the force of each strap, and figures of the seat."""
+    from workhold.model.straps import StrappedHold
+
+    straps = result.toolkit.strap_set
+    assert straps is not None
+    short, has_loads = unit.abbreviation, bool(result.query.loads)
+    needs = (f">each strap {unit.force}", "bolts in") if has_loads else ()
+    columns = (
+        ">rank",
+        "locators",
+        ">angle deg",
+        *needs,
+        "push",
+        f">location error {short}",
+        f">edge distance {short}",
+    )
+    table = Table(columns, spare=1)
+    for index in entries.index[:count].tolist():
+        fixture = result[index]
+        hold = fixture.hold
+        assert isinstance(hold, StrappedHold)
+        if hold.is_unfit or hold.holds_nothing:
+            table.red.add(len(table.rows))
+        need = hold.clamp_needed
+        force = "-" if need is None else rounded(need / unit.newtons, 0)
+        bolts = " ".join(straps.bolts.place_name(*one.hole) for one in hold.straps) or "-"
+        push = (
+            "?" if not hold.is_looked_at else "none" if hold.push is None else f"{hold.push.direction_deg:g}°"
+        )
+        quality = fixture.quality
+        table.add_row(
+            str(index + 1),
+            " ".join(peg.hole for peg in fixture.pegs),
+            rounded(fixture.pose.written_deg, 3),
+            *((force, bolts) if has_loads else ()),
+            push,
+            unit.number(quality["location_error"]),
+            unit.number(quality["edge_distance"], 1),
+        )
+    return table
+
+
+def first_strap_sentence(result: Result, unit: Unit) -> str:
+    """Say what is complete of a list of seats, and with which friction forces are stated."""
+    from workhold.model.straps import StrappedHold
+    from workhold.supports.straps import question_of
+    from workhold.supports.words_of_straps import reckoned_with
+
+    looked_at = sum(isinstance(hold, StrappedHold) and hold.is_looked_at for hold in result.holds)
+    said = f"All seats are listed; a push by hand was looked for at {looked_at} of them"
+    if not result.query.loads:
+        return f"{said}."
+    places = "straps, the best of a finite set of places, too"
+    return f"{said}, and {places}. {reckoned_with(question_of(result.query))}"
+
+
+def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> tuple[Table | str, ...]:
+    """Say how to set up one seat with its straps, with lengths in a unit, and what each load asks for."""
+    from workhold.model.straps import StrappedHold
+    from workhold.supports.straps import question_of
+    from workhold.supports.words_of_straps import list_steps, list_warnings, reckoned_with
+
+    hold, query = fixture.hold, fixture.listing.result.query
+    assert isinstance(hold, StrappedHold)
+    asked, short = question_of(query), unit.abbreviation
+    pegs = Table(("hole", f">x {short}", f">y {short}", ">face"))
+    for peg in fixture.pegs:
+        pegs.add_row(peg.hole, unit.number(peg.x), unit.number(peg.y), str(peg.face))
+    angle = rounded(fixture.pose.written_deg, 6)
+    tables: list[Table | str] = [
+        f"Fixture {rank} of {total}: part turned by {angle} degrees",
+        *(f"{step}." for step in list_steps(hold, fixture, asked, unit)),
+        "",
+        pegs,
+    ]
+    if hold.straps:
+        straps = Table(
+            ("strap", "bolt in", f">tip at x {short}", f">tip at y {short}", f">heel {short} high")
+        )
+        for number, one in enumerate(hold.straps, 1):
+            where = asked.bolts(fixture).place_name(*one.hole)
+            straps.add_row(str(number), where, *(unit.number(value) for value in (*one.at, one.height)))
+        tables += ["", straps]
+    if hold.clamp_needed_each:
+        needs = Table((">load", "name", f">force of each strap {unit.force}"))
+        for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
+            text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
+            needs.add_row(str(number), load.name, text)
+        tables += ["", reckoned_with(asked), needs]
+    quality = fixture.quality
+    tables.append(
+        f"Location error {unit.text(quality['location_error'])}; nearest edge {unit.text(quality['edge_distance'])}."
+    )
+    said = list_warnings(hold, asked, unit)
+    return (*tables, *(f"{words[:1].upper()}{words[1:]}" for words in said))

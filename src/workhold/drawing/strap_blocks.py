@@ -1,0 +1,147 @@
+"""The blocks of words beside a part under straps: on its picture, and on its setup sheet."""
+
+from __future__ import annotations
+
+from workhold.drawing.panel import TextColumn
+from workhold.drawing.scene import GREY, LengthUnit, degrees_text
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, heading
+from workhold.model.fixture import Fixture
+from workhold.model.hold_words import set_force
+from workhold.model.straps import StrappedHold
+from workhold.supports.straps import StrapQuestion, question_of
+from workhold.supports.words_of_straps import list_steps, list_warnings, reckoned_with
+
+__all__ = ["draw_strap_panel", "strap_writers"]
+
+# Loads beyond this are left to the command line; the hardest are shown.
+MOST_LOADS = 6
+
+
+def hold_of(fixture: Fixture) -> tuple[StrappedHold, StrapQuestion]:
+    """How straps hold the part of a fixture of a list, and what was asked of them."""
+    hold = fixture.hold
+    assert isinstance(hold, StrappedHold)
+    return hold, question_of(fixture.listing.result.query)
+
+
+def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
+    """Writes what to set and what follows, for a picture."""
+    hold, asked = hold_of(fixture)
+    write_force_needed(column, hold, lengths, 30)
+    column.fact("Locators in", ", ".join(peg.hole for peg in fixture.pegs), bold=True)
+    column.fact("on faces", ", ".join(str(peg.face) for peg in fixture.pegs))
+    column.fact("Part turned by θ", degrees_text(fixture.pose.written_deg, 3))
+    column.rule()
+    write_strap_table(column, fixture, lengths)
+    write_push(column, hold, lengths)
+    for sentence in list_warnings(hold, asked, lengths.unit):
+        column.item("▲", f"{sentence[:1].upper()}{sentence[1:]}", 12.5)
+    if hold.clamp_needed_each:
+        column.paragraph(reckoned_with(asked), 11.5, fill=GREY)
+    column.rule()
+
+
+def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUnit, size: float) -> None:
+    """Writes the force of each strap, large, where it is known."""
+    unit = lengths.unit
+    if hold.clamp_needed is not None:
+        column.words("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
+        words = f"{unit.force_words(set_force(hold.clamp_needed))} or more"
+        column.words(words, size, bold=True, gap=0.4)
+    elif hold.clamp_needed_each:
+        column.words("No force of the straps holds all loads", 15, bold=True, gap=0.6)
+    if hold.slip_reserve is not None:
+        column.fact(
+            "A strap is rated for",
+            f"{unit.force_words(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that",
+        )
+
+
+def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
+    """Writes where each strap is bolted, where its tip presses, and how high its heel stands."""
+    hold, asked = hold_of(fixture)
+    if not hold.straps:
+        return
+    sign, bolts = lengths.sign, asked.bolts(fixture)
+    rows = [
+        [bolts.place_name(*one.hole), *(lengths.number(value) for value in (*one.at, one.height))]
+        for one in hold.straps
+    ]
+    column.table(["bolt in", f"tip x {sign}", f"tip y {sign}", f"heel {sign}"], rows, BODY)
+
+
+def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> None:
+    """Writes where and in which direction a hand seats the part."""
+    if hold.push is None:
+        return
+    x, y = (lengths.number(value) for value in hold.push.at)
+    column.fact("Push by hand at", f"({x}, {y}) {lengths.sign}")
+    column.fact("towards", f"{degrees_text(hold.push.direction_deg, 1)} from x")
+
+
+def strap_writers() -> tuple[list[Writer], list[Writer]]:
+    """The blocks that a sheet of straps needs beside the plan, and the others."""
+    return [write_places, write_straps, write_strap_force], [write_strap_steps, write_strap_loads, write_seat]
+
+
+def write_places(column: TextColumn, sheet: Sheet) -> None:
+    heading(column, "Locators")
+    sign = sheet.lengths.sign
+    rows = [
+        [peg.hole, sheet.lengths.number(peg.x), sheet.lengths.number(peg.y), str(peg.face)]
+        for peg in sheet.fixture.pegs
+    ]
+    column.table(["hole", f"x {sign}", f"y {sign}", "face"], rows, BODY)
+    column.fact("part turned by θ", degrees_text(sheet.fixture.pose.written_deg, 3))
+
+
+def write_straps(column: TextColumn, sheet: Sheet) -> None:
+    hold, _ = hold_of(sheet.fixture)
+    heading(column, "Straps")
+    if hold.straps:
+        write_strap_table(column, sheet.fixture, sheet.lengths)
+    else:
+        column.paragraph("None were chosen.", BODY)
+    write_push(column, hold, sheet.lengths)
+
+
+def write_strap_force(column: TextColumn, sheet: Sheet) -> None:
+    hold, asked = hold_of(sheet.fixture)
+    if not hold.clamp_needed_each:
+        return
+    heading(column, "Force")
+    write_force_needed(column, hold, sheet.lengths, 20)
+    column.paragraph("The bolt carries more than the tip: the heel takes its share.", NOTE)
+    column.paragraph(reckoned_with(asked), NOTE)
+
+
+def write_strap_steps(column: TextColumn, sheet: Sheet) -> None:
+    hold, asked = hold_of(sheet.fixture)
+    heading(column, "Setting up")
+    steps = ["Clean plate, locators and part", *list_steps(hold, sheet.fixture, asked, sheet.lengths.unit)]
+    steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
+    for number, step in enumerate(steps, 1):
+        column.item(f"{number}.", f"{step}.", BODY)
+
+
+def write_strap_loads(column: TextColumn, sheet: Sheet) -> None:
+    hold, _ = hold_of(sheet.fixture)
+    query, unit = sheet.fixture.listing.result.query, sheet.lengths.unit
+    if not hold.clamp_needed_each:
+        return
+    heading(column, f"Force of each strap by load, {unit.force}")
+    pairs = list(enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1))
+    pairs.sort(key=lambda one: (one[1][1] is not None, -(one[1][1] or 0.0)))
+    for number, (load, need) in pairs[:MOST_LOADS]:
+        size = f": {unit.force_words(load.force)}" if load.force else ""
+        name = f"{load.name or f'load {number}'}{size}"
+        column.fact(name, "none holds it" if need is None else unit.force_number(need, 0), bold=True)
+    if len(pairs) > MOST_LOADS:
+        column.paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)
+
+
+def write_seat(column: TextColumn, sheet: Sheet) -> None:
+    quality, lengths = sheet.fixture.quality, sheet.lengths
+    heading(column, "The seat")
+    column.fact("location error", lengths.words(quality["location_error"]))
+    column.fact("nearest edge", lengths.short(quality["edge_distance"], 5))

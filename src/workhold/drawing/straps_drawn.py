@@ -1,0 +1,55 @@
+"""Straps over a part on its plan: bars from the bolts' holes to the tips, and the push by hand."""
+
+from __future__ import annotations
+
+from math import cos, hypot, radians, sin
+
+from workhold.drawing.scene import BLACK, GREY, Scene, View
+from workhold.fixels.toolkit import Toolkit
+from workhold.geometry.segment import Point
+from workhold.model.straps import StrappedHold
+
+__all__ = ["draw_straps"]
+
+BAR_FILL, HAND = "#8a93a3", "#0b3a82"
+# A hand's arrow in page units.
+ARROW_LENGTH = 46.0
+
+
+def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, weight: float) -> None:
+    """Draws the straps of a seat, the holes of their bolts where these are their own, and the push by hand."""
+    straps = toolkit.strap_set
+    assert straps is not None
+    radius = max(straps.tip_radius * view.scale, 3.0)
+    bolt = max(toolkit.plates[0].peg_radius * view.scale, 2.5)
+    for number, one in enumerate(hold.straps, 1):
+        group = scene.group("strap")
+        hole = straps.bolts.place(*one.hole)
+        start, tip = view((float(hole[0]), float(hole[1]))), view(one.at)
+        far = heel_of(start, tip, radius)
+        group.line([far, tip], BAR_FILL, 1.5 * radius, stroke_linecap="round", stroke_opacity="0.55")
+        group.circle(tip, radius, "none", BLACK, 1.2 * weight)
+        group.circle(start, bolt, "#ffffff", BLACK, 1.6 * weight)
+        size = 0.6 * bolt
+        for way in (1.0, -1.0):
+            ends = [(start[0] - size, start[1] - way * size), (start[0] + size, start[1] + way * size)]
+            group.line(ends, BLACK, 1.0 * weight)
+        if weight >= 1.0:
+            group.text((tip[0], tip[1] + 4), str(number), 11, "middle", bold=True)
+    if hold.push is not None:
+        turn = radians(hold.push.direction_deg)
+        x, y = view(hold.push.at)
+        long = ARROW_LENGTH * weight
+        start = x - long * cos(turn), y + long * sin(turn)
+        hand = scene.group("push")
+        hand.arrow(start, (x, y), HAND, 2.4 * weight, 11 * weight)
+        if weight >= 1.0:
+            beyond = start[0] - 9 * cos(turn), start[1] + 9 * sin(turn) + 4
+            hand.text(beyond, "hand", 11, "middle", fill=GREY, halo=3.0)
+
+
+def heel_of(start: Point, tip: Point, radius: float) -> Point:
+    """Where a bar ends behind its bolt, on the page."""
+    far = hypot(start[0] - tip[0], start[1] - tip[1]) or 1.0
+    behind = 1.0 + 2.0 * radius / far
+    return tip[0] + (start[0] - tip[0]) * behind, tip[1] + (start[1] - tip[1]) * behind

@@ -1,0 +1,172 @@
+"""Seats under straps in a result file, checked and read; :mod:`workhold.files.result.strapped_text` writes them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, radians
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import Field
+
+from workhold.conventions import AGREEMENT
+from workhold.errors import InputError
+from workhold.files.result.forms import FormPart
+from workhold.fixels.toolkit import Toolkit
+from workhold.model.fixture import Fixture, Peg
+from workhold.model.fixture_table import FixtureTable, make_unknown_quality
+from workhold.model.pose import Pose
+from workhold.model.quality import FIGURES
+from workhold.model.query import Query
+from workhold.model.straps import HandPush, Strap, StrappedHold
+
+__all__ = ["StrappedSeatPart", "check_strapped", "table_of_strapped"]
+
+LARGEST, MOST_HOLES = 1e9, 1_000_000
+Whole = Annotated[int, Field(ge=0)]
+Hole = Annotated[int, Field(ge=0, le=MOST_HOLES)]
+Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
+Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
+
+
+class StrappedPegPart(FormPart):
+    """A locator in a hole of the plate: its centre in mm, and the face that it touches."""
+
+    role: Literal["locator"] = "locator"
+    column: Hole
+    row: Hole
+    x: Number
+    y: Number
+    segment: Whole
+
+
+class StrappedPosePart(FormPart):
+    """Where the workpiece lies."""
+
+    theta_deg: Number
+    x: Number
+    y: Number
+
+
+class StrapPart(FormPart):
+    """A strap: its bolt's hole, where its tip presses, on what, and how high its heel stands."""
+
+    hole: Annotated[list[Hole], Field(min_length=2, max_length=2)]
+    at: Point
+    over: Literal["plate"] = "plate"
+    heel: Number
+
+
+class PushPart(FormPart):
+    """A push by hand that seats the part: where, in which direction, and how hard it presses each locator."""
+
+    at: Point
+    direction_deg: Number
+    shares: list[Number] = Field(default=[])
+
+
+class StrappedQualityPart(FormPart):
+    """Figures, in mm, degrees and N."""
+
+    location_error: Number | None = None
+    end_distance: Number | None = None
+    edge_distance: Number | None = None
+    tilt: Number | None = None
+    smallest_face: Number | None = None
+    full_contact: bool | None = None
+    clamp_needed: Number | None = None
+    clamp_needed_each: list[Number | None] = Field(
+        default=[], description="for each load in its order; null where no force of the straps holds it"
+    )
+
+
+class StrappedSeatPart(FormPart):
+    """A seat of three locators with the straps that hold the part down there; best first."""
+
+    type: str
+    pegs: list[StrappedPegPart] = Field(min_length=3, max_length=3)
+    pose: StrappedPosePart
+    looked_at: bool = True
+    straps: list[StrapPart] = Field(max_length=4)
+    supports: list[Whole] = Field(default=[], max_length=0, description="none: the part lies on the plate")
+    places: Whole | None = None
+    push: PushPart | None
+    quality: StrappedQualityPart
+
+    def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
+        """The fixture with the figures that are written."""
+        plate = toolkit.plates[0]
+        pegs = tuple(
+            Peg(plate.name, one.column, one.row, one.x, one.y, one.segment, 0.0) for one in self.pegs
+        )
+        pose = Pose(self.pose.theta_deg, self.pose.x, self.pose.y)
+        written = self.quality.model_dump(exclude={"full_contact", "clamp_needed_each"}, exclude_none=True)
+        return Fixture(self.type, pegs, pose, 0.0, written, hold=self.hold(toolkit, unit_force))
+
+    def hold(self, toolkit: Toolkit, unit_force: float | None = None) -> StrappedHold:
+        """How straps hold the part; refuses a toolkit without straps."""
+        if toolkit.strap_set is None:
+            raise InputError(f"straps hold it, which a {toolkit.noun} does not have.")
+        push = self.push
+        return StrappedHold(
+            tuple(
+                Strap((a, b), (x, y), one.heel)
+                for one in self.straps
+                for a, b in [one.hole]
+                for x, y in [one.at]
+            ),
+            None
+            if push is None
+            else HandPush((push.at[0], push.at[1]), push.direction_deg, tuple(push.shares)),
+            self.places,
+            tuple(self.quality.clamp_needed_each),
+            toolkit.strap_set.max_force,
+            self.looked_at,
+        )
+
+
+def check_strapped(parts: Sequence[StrappedSeatPart], query: Query, path: Path) -> None:
+    """Refuses seats of another kind, with faces that there are not, and with centres that are not those of holes."""
+    if not parts:
+        return
+    faces = {face.number for face in query.workpiece.numbered.faces}
+    plate, names = query.toolkit.plates[0], query.toolkit.types
+    for number, part in enumerate(parts, 1):
+        if part.type not in names:
+            raise InputError(
+                f"{path}: fixture {number} cannot be used: its type is not {' or '.join(names)}."
+            )
+        if not faces.issuperset(peg.segment for peg in part.pegs):
+            raise InputError(
+                f"{path}: fixture {number} touches a segment that does not name a face of the part."
+            )
+        for peg in part.pegs:
+            x, y = plate.place(peg.column, peg.row)
+            if hypot(peg.x - x, peg.y - y) > AGREEMENT:
+                raise InputError(f"{path}: fixture {number} has a peg whose x, y are not those of its hole.")
+
+
+def table_of_strapped(parts: Sequence[StrappedSeatPart]) -> FixtureTable:
+    """The table of the seats of a file."""
+    count = len(parts)
+    quality = make_unknown_quality(np.full(count, np.nan))
+    places = {one.key: number for number, one in enumerate(FIGURES)}
+    for row, part in zip(quality, parts, strict=True):
+        for key, value in part.quality.model_dump(exclude_none=True).items():
+            if key in places:
+                row[places[key]] = value
+    whole = np.array(
+        [[[peg.column, peg.row, peg.segment] for peg in part.pegs] for part in parts], np.int32
+    ).reshape(count, 3, 3)
+    return FixtureTable(
+        arrangement=np.zeros(count, np.int8),
+        column=whole[:, :, 0].copy(),
+        row=whole[:, :, 1].copy(),
+        face=whole[:, :, 2].copy(),
+        theta=np.array([radians(part.pose.theta_deg) for part in parts]),
+        position=np.array([(part.pose.x, part.pose.y) for part in parts]).reshape(-1, 2),
+        jaw_separation=np.zeros(count),
+        force=np.zeros((count, 3)),
+        quality=quality,
+    )

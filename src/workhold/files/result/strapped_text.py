@@ -1,0 +1,118 @@
+"""The text of seats under straps: a line of JSON of a result file, or a row of a spreadsheet, for each.
+
+A seat gives its three locators, the pose, and the straps with the push by hand where these were looked for.
+:mod:`workhold.files.result.strapped` reads the lines; it is a module of its own because pydantic takes long to import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from workhold.model.fixture import Fixture
+from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, FIGURES, LOCATION_ERROR, SMALLEST_FACE, TILT
+from workhold.model.result import Result
+from workhold.model.straps import STRAP_FIGURES, StrappedHold
+
+__all__ = ["SEAT_FIGURES", "is_strapped", "strapped_columns", "strapped_entry", "strapped_rows"]
+
+DIGITS = 12
+# The figures of a seat, those of straps besides.
+SEAT_FIGURES = tuple(
+    FIGURES[number] for number in (LOCATION_ERROR, END_DISTANCE, EDGE_DISTANCE, TILT, SMALLEST_FACE)
+)
+
+
+def length(value: float) -> float:
+    """A length as it is written, to 1e-9 mm."""
+    return round(value, 9) + 0.0
+
+
+def figure(value: float | None) -> float | None:
+    """A figure as it is written, to twelve digits; nothing as it is."""
+    return None if value is None else float(f"{value:.{DIGITS}g}") + 0.0
+
+
+def is_strapped(fixture: Any) -> bool:
+    """Whether a fixture in a file is a seat under straps."""
+    return isinstance(fixture, dict) and "straps" in fixture and "push" in fixture
+
+
+def strapped_entry(fixture: Fixture) -> dict[str, Any]:
+    """A seat with its straps, as it is written."""
+    hold, pose = fixture.hold, fixture.pose
+    assert isinstance(hold, StrappedHold)
+    push = hold.push
+    seat = {one.key: figure(fixture.quality[one.key]) for one in SEAT_FIGURES if one.key in fixture.quality}
+    needs: dict[str, Any] = {}
+    if hold.places is not None:
+        needs = {
+            "full_contact": bool(hold.straps),
+            "clamp_needed": figure(hold.clamp_needed),
+            "clamp_needed_each": [figure(one) for one in hold.clamp_needed_each],
+        }
+    return {
+        "type": fixture.type,
+        "pegs": [
+            {
+                "role": "locator",
+                "column": peg.column,
+                "row": peg.row,
+                "x": length(peg.x),
+                "y": length(peg.y),
+                "segment": peg.face,
+            }
+            for peg in fixture.pegs
+        ],
+        "pose": {
+            "theta_deg": round(pose.theta_deg, 10) % 360.0 + 0.0,
+            "x": length(pose.x),
+            "y": length(pose.y),
+        },
+        "looked_at": hold.is_looked_at,
+        "straps": [
+            {
+                "hole": list(one.hole),
+                "at": [length(value) for value in one.at],
+                "over": "plate",
+                "heel": length(one.height),
+            }
+            for one in hold.straps
+        ],
+        "supports": [],
+        "places": hold.places,
+        "push": None
+        if push is None
+        else {
+            "at": [length(value) for value in push.at],
+            "direction_deg": round(push.direction_deg, 9),
+            "shares": [figure(one) for one in push.shares],
+        },
+        "quality": {**seat, **needs},
+    }
+
+
+def strapped_columns(straps: int) -> list[str]:
+    """The names of the columns of :func:`strapped_rows`, for so many straps."""
+    pegs = [f"{name}_{k}" for k in range(1, 4) for name in ("column", "row", "face")]
+    of_straps = [
+        f"strap_{name}_{k}" for k in range(1, straps + 1) for name in ("column", "row", "x", "y", "heel")
+    ]
+    keys = [one.key for one in (*STRAP_FIGURES, *SEAT_FIGURES)]
+    return ["number", "type", "theta_deg", "x", "y", *keys, *pegs, *of_straps, "push_x", "push_y", "push_deg"]
+
+
+def strapped_rows(result: Result, straps: int) -> Iterator[list[Any]]:
+    """A row for each seat, best first: lengths in mm, angles in degrees, forces in N; empty where not known."""
+    for number, fixture in enumerate(result, 1):
+        entry = strapped_entry(fixture)
+        pose, figures = entry["pose"], fixture.quality
+        known = [figures.get(one.key) for one in (*STRAP_FIGURES, *SEAT_FIGURES)]
+        row = [number, entry["type"], pose["theta_deg"], pose["x"], pose["y"], *map(figure, known)]
+        for peg in entry["pegs"]:
+            row += [peg["column"], peg["row"], peg["segment"]]
+        for k in range(straps):
+            one = entry["straps"][k] if k < len(entry["straps"]) else None
+            row += [None] * 5 if one is None else [*one["hole"], *one["at"], one["heel"]]
+        push = entry["push"]
+        yield row + ([None] * 3 if push is None else [*push["at"], push["direction_deg"]])

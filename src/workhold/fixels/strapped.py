@@ -1,0 +1,234 @@
+"""A dowel plate with strap clamps: three locators place the part, and straps hold it down by friction.
+
+No clamp pushes the part sideways. A hand seats it against the locators until the straps are tight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from math import floor, isfinite
+from typing import TYPE_CHECKING, Any
+
+from attrs import evolve
+
+from workhold.errors import InputError
+from workhold.fixels import fields
+from workhold.fixels.carrier import Carrier
+from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle
+from workhold.fixels.setup_words import PageWords, SetupWords
+from workhold.fixels.strap_set import StrapSet
+from workhold.fixels.table import FieldTable, PageLabel
+from workhold.fixels.toolkit import Arrangement, Change, Toolkit, Wording
+from workhold.units import Unit
+
+__all__ = ["StrapPlate"]
+
+# What part of a pitch counts as rounding.
+ROUNDING = 1e-9
+
+
+@made_from_table
+class StrapPlate(Toolkit):
+    """A plate with a lattice of holes: three locators in any of them, and straps over the part.
+
+    Parameters
+    ----------
+    pitch : distance between neighbouring columns and rows in mm, one number or (x, y).
+    peg_radius : of the locators in mm, above 0; bolts are as thick.
+    columns, rows : of holes, or None for as many as needed.
+    straps : how many press the part down, 1 to 4.
+    tip_radius : of a strap's round tip in mm.
+    reach : least and most in mm from the middle of a bolt's hole to the tip of its strap.
+    bolt_pitch : of holes for bolts in mm, one number or (x, y), a whole part of the pitch; None where the
+        dowels' own holes take the bolts.
+    bolt_offset : from the first dowel hole to the first hole for a bolt in mm, one number or (x, y).
+    max_force : what a strap is rated for, in N; None where nobody says.
+    supports, top_clamp, pins : as of every toolkit.
+    tolerance : how far these pegs and the faces on them may be off; None is not known.
+
+    Raises
+    ------
+    InputError
+        For values that cannot be, and holes for bolts that do not repeat as the dowels' holes do.
+
+    Examples
+    --------
+    >>> from workhold import StrapPlate
+    >>> plate = StrapPlate(pitch=20, peg_radius=3, columns=8, rows=6, bolt_pitch=20, bolt_offset=10)
+    >>> plate.strap_set.bolts.columns, plate.strap_set.bolts.place(0, 0)
+    (7, (10.0, 10.0))
+    """
+
+    kind = "strapped"
+    table = FieldTable(
+        "plate with straps",
+        "A plate with locators and straps",
+        (
+            *fields.ON_A_PLATE,
+            fields.STRAPS,
+            fields.TIP_RADIUS,
+            fields.STRAP_REACH,
+            fields.BOLT_PITCH,
+            fields.BOLT_OFFSET,
+            fields.MAX_FORCE.shown(
+                PageLabel("Rated force of a strap in N", "not known"),
+                help="What each strap, or the vise, is rated for, in N or with its unit.",
+            ),
+        ),
+    )
+    noun = "plate"
+    locked = "a strap with its nut,"
+    law = "plate"
+    arrangements = (Arrangement("strapped", (3,)),)
+    wording = Wording(
+        two="two locators",
+        four="three locators",
+        inside="on this plate",
+        within="the plate as asked: with the columns, rows and angles given",
+        rules="places the part",
+        backwards="the locators pull, not when they push",
+        holes="holes that the plate does not have",
+        sets="sets of three locators",
+        clear="locators clear of the part",
+        reasons=(
+            "No two locators can touch the part at the same time: the holes are too far apart for it, or none of "
+            "its faces is allowed.",
+            "No three locators place the part: where three touch it, it can still slide or turn.",
+            "Three locators place the part, but not in holes and at angles that are there.",
+        ),
+    )
+    setup_words = SetupWords(
+        standing="Locators",
+        located_by="Three locators",
+        put="Put {peg}s in {holes} of the {plate}.",
+        against="against all {count} {peg}s",
+        touching="three locators",
+        resting="against all three locators",
+    )
+    page = PageWords(
+        "Plate with dowels and straps",
+        "Tighten straps",
+        {
+            fields.PITCH.name: [20.0, 20.0],
+            fields.PEG_RADIUS.name: 3.0,
+            fields.COLUMNS.name: 8,
+            fields.ROWS.name: 6,
+            fields.STRAPS.name: 2,
+        },
+    )
+
+    pitch: tuple[float, float]
+    peg_radius: float
+    columns: int | None
+    rows: int | None
+    straps: int
+    tip_radius: float
+    reach: tuple[float, float]
+    bolt_pitch: tuple[float, float] | None
+    bolt_offset: tuple[float, float]
+    max_force: float | None
+
+    if TYPE_CHECKING:
+        # As the table makes it, for editors and mypy; a test compares the two.
+        def __init__(
+            self,
+            pitch: float | Iterable[float],
+            peg_radius: float,
+            columns: int | None = None,
+            rows: int | None = None,
+            straps: int = 2,
+            tip_radius: float = 6.0,
+            reach: Iterable[float] = (20.0, 60.0),
+            bolt_pitch: float | Iterable[float] | None = None,
+            bolt_offset: float | Iterable[float] = 0.0,
+            max_force: float | None = None,
+            *,
+            supports: Any = None,
+            top_clamp: Any = None,
+            pins: Any = None,
+            tolerance: Any = None,
+        ) -> None: ...
+
+    def __attrs_post_init__(self) -> None:
+        settle(self, noun=self.noun, peg="locator")
+        least, most = self.reach
+        if not 0 <= least <= most or most == 0:
+            raise InputError(
+                f"straps cannot reach from {least:g} to {most:g} mm: give the smaller distance first."
+            )
+        if self.bolt_pitch is None:
+            if self.bolt_offset != (0.0, 0.0):
+                raise InputError(
+                    "the first hole for a bolt has a distance from the first dowel hole, but bolts have no holes of "
+                    "their own: give their pitch, bolt_pitch."
+                )
+            return
+        plate = self.carriers[0]
+        for name, pitch, own, offset in zip(
+            "xy", plate.pitch, self.bolt_pitch, self.bolt_offset, strict=True
+        ):
+            if not (isfinite(own) and own > 0):
+                raise InputError(
+                    f"the bolts' pitch {own:g} in {name} is not a positive length: give it in mm."
+                )
+            many = pitch / own
+            if abs(many - round(many)) > ROUNDING:
+                raise InputError(
+                    f"holes for bolts every {own:g} mm do not repeat with dowel holes every {pitch:g} mm in {name}: give a "
+                    "bolts' pitch of which the dowels' pitch is a whole multiple."
+                )
+            if not 0 <= offset < own:
+                raise InputError(
+                    f"the first hole for a bolt lies {offset:g} mm from the first dowel hole in {name}: give 0 or more, "
+                    f"less than the bolts' pitch of {own:g} mm."
+                )
+
+    @cached_property
+    def strap_set(self) -> StrapSet:
+        return StrapSet(self.straps, self.tip_radius, self.reach, self.max_force, self.bolts)
+
+    @cached_property
+    def carriers(self) -> tuple[Carrier, ...]:
+        """The plate alone: nothing moves."""
+        return (lattice_carrier(self, "plate", noun="plate", peg="locator"),)
+
+    @property
+    def moving(self) -> Carrier:
+        """What is tightened, a strap; no travel of it brings the part to its place."""
+        return evolve(self.carriers[0], name="strap", noun="strap", peg="strap")
+
+    @property
+    def bolts(self) -> Carrier:
+        """The lattice of holes for bolts, as far as the dowels' holes go; the plate where those take them."""
+        plate = self.carriers[0]
+        if self.bolt_pitch is None:
+            return plate
+        ends = [
+            None if count is None else floor(((count - 1) * pitch - offset) / own + ROUNDING) + 1
+            for count, pitch, own, offset in zip(
+                (plate.columns, plate.rows), plate.pitch, self.bolt_pitch, self.bolt_offset, strict=True
+            )
+        ]
+        return evolve(
+            plate,
+            name="bolts",
+            pitch=self.bolt_pitch,
+            columns=ends[0],
+            rows=ends[1],
+            offset=self.bolt_offset,
+            peg="bolt",
+        )
+
+    @property
+    def half_turned(self) -> tuple[int, ...] | None:
+        """The plate takes its own place; None where half a turn moves the holes for bolts."""
+        if self.bolt_pitch is None:
+            return (0,)
+        twice = [2 * offset / own for offset, own in zip(self.bolt_offset, self.bolt_pitch, strict=True)]
+        return (0,) if all(abs(one - round(one)) <= ROUNDING for one in twice) else None
+
+    def further_changes(self, unit: Unit) -> Iterator[Change]:
+        """A finer lattice."""
+        if self.bolt_pitch is None:
+            yield from finer(self)

@@ -1,0 +1,289 @@
+"""Seats of three locators with the straps that hold the part down there with the least force.
+
+All seats are listed (``search.seat_search``), the best first: square to the drawing, then by their location error.
+For the first of them a push by hand is sought that presses the part against all three locators and, where there are
+loads, the straps that need the least force (``supports.straps``). These seats stand in the order of that force; seats
+that no push seats are unfit, and come last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from threading import Event
+
+import numpy as np
+from attrs import evolve
+from numpy.typing import NDArray
+
+from workhold.contact.problem import Progress
+from workhold.conventions import SQUARE_TILT
+from workhold.fixels.carrier import Carrier
+from workhold.geometry.symmetry import rotate_vectors
+from workhold.listing.results import stage
+from workhold.model.fixture_table import FixtureTable
+from workhold.model.notes import LeftUndecided, NoFixture, NoPlace, Note, Remark, Stage
+from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, LOCATION_ERROR, SMALLEST_FACE, TILT
+from workhold.model.query import Query
+from workhold.model.result import Result
+from workhold.model.straps import USUAL_SEATS, HandPush, Strap, StrappedHold
+from workhold.search.seat_search import FoundSeats, find_seats
+from workhold.supports.straps import StrapSearch, question_of
+
+__all__ = ["find_strapped_fixtures", "within_error"]
+
+Array = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+# The share of the work, as progress reports it, that finds the seats.
+SEATS = 0.2
+# Digits of figures that others come after in an order.
+COARSE_DIGITS = 2
+# Columns of the figures that seats are ranked by; more is better of those after the first two.
+COLUMNS = {
+    "square": TILT,
+    "location_error": LOCATION_ERROR,
+    "edge_distance": EDGE_DISTANCE,
+    "end_distance": END_DISTANCE,
+    "smallest_face": SMALLEST_FACE,
+}
+LESS_IS_BETTER = ("square", "location_error")
+NOT_LOADED = (
+    "No load is given, so no straps are chosen: give a load to have them, with the force that they need."
+)
+
+
+def find_strapped_fixtures(
+    query: Query, threads: int = 1, progress: Progress | None = None, cancel: Event | None = None
+) -> Result:
+    """Finds every seat of a part on the plate of a query, and the straps of the best of them."""
+    found = find_seats(query, threads, stage(progress, 0.0, SEATS), cancel)
+    table = placed_on_plate(within_error(found.table, query), query)
+    table = table.take(seat_order(table, query))
+    whole = result_of(table, found, query)
+    holds, is_whole = strapped_holds(whole, stage(progress, SEATS, 1.0), cancel)
+    order = final_order(holds, table, query)
+    chosen = order[: query.best]
+    table, holds = moved_into_view(table.take(np.array(order, np.int64)), [holds[k] for k in order], query)
+    return evolve(
+        whole,
+        table=table.take(slice(0, len(chosen))),
+        holds=tuple(holds[: len(chosen)]),
+        complete=whole.complete and is_whole,
+    )
+
+
+def within_error(table: FixtureTable, query: Query) -> FixtureTable:
+    """The seats with no larger location error than asked."""
+    most = query.max_location_error
+    return table if most is None else table.take(table.quality[:, LOCATION_ERROR] <= most)
+
+
+def result_of(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
+    """The result of seats, without any straps."""
+    name = query.toolkit.arrangements[0].name
+    notes = list[Note]()
+    undecided = len(found.proof.undecided)
+    if undecided:
+        notes.append(LeftUndecided(undecided))
+    if found.is_complete and len(table) == 0 and not undecided:
+        notes.append(no_fixture(found, query))
+    if len(table) and not query.loads:
+        notes.append(Remark(NOT_LOADED))
+    return Result(
+        query=query,
+        table=table,
+        found={name: len(table)},
+        distinct={name: count_sets(table, query)},
+        complete=found.is_complete,
+        notes=tuple(notes),
+        statistics=found.statistics,
+        proof=found.proof,
+    )
+
+
+def no_fixture(found: FoundSeats, query: Query) -> Note:
+    """Why there is no seat."""
+    wording = query.toolkit.wording
+    if found.proof.verified:
+        return NoPlace(found.proof.verified, wording)
+    stages: tuple[tuple[Stage, bool], ...] = (
+        ("shape", found.statistics["chord_curves"] == 0),
+        ("pair", True),
+    )
+    return NoFixture(next(name for name, is_so in stages if is_so), wording)
+
+
+def count_sets(table: FixtureTable, query: Query) -> int:
+    """How many seats there are where such that a rotation of the part makes the same count once."""
+    # Rotations of the part change neither holes nor the place of its centre, only angle and faces.
+    from workhold.geometry.symmetry import find_centroid_of_joints, find_rotations_onto_itself
+
+    every = query.workpiece.numbered
+    segments = [face.segment for face in every.faces]
+    turns = [one.angle for one in find_rotations_onto_itself(segments, every.marks)]
+    if len(turns) < 2 or len(table) == 0:
+        return len(table)
+    plate = query.toolkit.plates[0]
+    kept = np.array(find_centroid_of_joints(segments))
+    lowest = np.column_stack([table.column.min(axis=1), table.row.min(axis=1)]) * np.array(plate.pitch)
+    at = table.position + np.stack(rotate_vectors(kept[0], kept[1], table.theta), axis=1) - lowest
+    period = np.pi if query.toolkit.half_turned is not None else 2 * np.pi
+    seen = set[tuple[object, ...]]()
+    spans = np.column_stack([np.ptp(table.column, axis=1), np.ptp(table.row, axis=1)])
+    for k in range(len(table)):
+        holes = sorted(
+            zip(
+                (table.column[k] - table.column[k].min()).tolist(),
+                (table.row[k] - table.row[k].min()).tolist(),
+                strict=True,
+            )
+        )
+        images = list[tuple[object, ...]]()
+        for turn in turns:
+            theta = (float(table.theta[k]) - turn + 1e-6) % (2 * np.pi)
+            place, where = at[k], holes
+            if theta >= period:
+                theta -= period
+                place = spans[k] * np.array(plate.pitch) - place
+                where = sorted((int(spans[k, 0]) - a, int(spans[k, 1]) - b) for a, b in holes)
+            images.append(
+                (round(theta, 5), tuple(where), round(float(place[0]), 4), round(float(place[1]), 4))
+            )
+        seen.add(min(images, key=str))
+    return len(seen)
+
+
+def placed_on_plate(table: FixtureTable, query: Query) -> FixtureTable:
+    """Seats in the holes of a plate with ends: those in which the part's middle is nearest to the plate's."""
+    plate = query.toolkit.plates[0]
+    cx, cy = query.workpiece.center
+    middle = table.position + np.stack(rotate_vectors(cx, cy, table.theta), axis=1)
+    moves = np.zeros((len(table), 2), np.int64)
+    for axis, (count, numbers) in enumerate(((plate.columns, table.column), (plate.rows, table.row))):
+        if count is None:
+            continue
+        spare = count - 1 - numbers.max(axis=1, initial=0)
+        wanted = plate.offset[axis] + (count - 1) * plate.pitch[axis] / 2 - middle[:, axis]
+        moves[:, axis] = np.clip(np.ceil(wanted / plate.pitch[axis] - 0.5 - 1e-9).astype(np.int64), 0, spare)
+    return moved(table, moves, plate)
+
+
+def moved(table: FixtureTable, moves: IntArray, plate: Carrier) -> FixtureTable:
+    """Seats moved by whole columns and rows (N, 2)."""
+    return evolve(
+        table,
+        column=(table.column + moves[:, :1]).astype(np.int32),
+        row=(table.row + moves[:, 1:]).astype(np.int32),
+        position=table.position + moves * np.array(plate.pitch),
+    )
+
+
+def seat_order(table: FixtureTable, query: Query) -> IntArray:
+    """The order of seats by their own figures, best first; equal ones by angle, holes and faces."""
+    keys = [one for name in query.rank_by if name in COLUMNS for one in [seat_key(table, name)]]
+    return np.asarray(np.lexsort([np.arange(len(table)), *keys[::-1]]), np.int64)
+
+
+def seat_key(table: FixtureTable, name: str) -> Array:
+    """What a figure of seats (N,) counts as: smaller comes first."""
+    values = table.quality[:, COLUMNS[name]]
+    if name == "square":
+        return np.asarray(values >= SQUARE_TILT, np.float64)
+    rounded = np.array([coarse(one) for one in values.tolist()])
+    return rounded if name in LESS_IS_BETTER else -rounded
+
+
+def coarse(value: float) -> float:
+    """A number to two significant digits; what is not known as it is."""
+    return float(f"{value:.{COARSE_DIGITS - 1}e}")
+
+
+def strapped_holds(
+    result: Result, progress: Progress | None, cancel: Event | None
+) -> tuple[list[StrappedHold], bool]:
+    """How straps hold the part at each seat; of those after the first only that nobody looked at them.
+
+    The second is whether all that are to be looked at were.
+    """
+    query = result.query
+    straps = query.toolkit.strap_set
+    assert straps is not None
+    wanted, seated = query.strapped or USUAL_SEATS, 0
+    unseen = StrappedHold((), None, None, (), straps.max_force, is_looked_at=False)
+    holds = [unseen] * len(result)
+    for place in range(len(result)):
+        if seated == wanted:
+            break
+        if cancel is not None and cancel.is_set():
+            return holds, False
+        fixture = result[place]
+        search = StrapSearch(fixture, query, question_of(query))
+        holds[place] = search.best(cancel) if query.loads else search.unloaded()
+        seated += holds[place].push is not None
+        if progress is not None:
+            progress(seated / wanted, len(result))
+    return holds, True
+
+
+def final_order(holds: Sequence[StrappedHold], table: FixtureTable, query: Query) -> list[int]:
+    """The places of seats in the order of the list, given them in the order of their own figures."""
+
+    def key(place: int) -> tuple[float, ...]:
+        hold = holds[place]
+        if hold.is_unfit:
+            return (3.0,)
+        if not hold.is_looked_at:
+            return (1.0,)
+        if hold.holds_nothing:
+            return (2.0,)
+        numbers = list[float]()
+        for name in query.rank_by:
+            if name == "clamp_needed":
+                need = hold.clamp_needed
+                numbers.append(0.0 if need is None else coarse(need))
+            elif name in COLUMNS:
+                numbers.append(float(seat_key(table.take(slice(place, place + 1)), name)[0]))
+        return (0.0, float(hold.is_beyond_rating), *numbers)
+
+    # What is looked at comes before what is not; equal ones stay as they are.
+    return sorted(range(len(holds)), key=key)
+
+
+def moved_into_view(
+    table: FixtureTable, holds: Sequence[StrappedHold], query: Query
+) -> tuple[FixtureTable, list[StrappedHold]]:
+    """Seats and straps moved by whole columns and rows so that none is below 0 on a plate without ends."""
+    plate, straps = query.toolkit.plates[0], query.toolkit.strap_set
+    assert straps is not None
+    ratio = np.round(np.array(plate.pitch) / np.array(straps.bolts.pitch)).astype(np.int64)
+    moves = np.zeros((len(table), 2), np.int64)
+    for place, hold in enumerate(holds):
+        holes = np.array([strap.hole for strap in hold.straps], np.int64).reshape(-1, 2)
+        for axis, count in enumerate((plate.columns, plate.rows)):
+            if count is None:
+                moves[place, axis] = max(-int((holes[:, axis] // ratio[axis]).min(initial=0)), 0)
+    out = [
+        hold if not move.any() else move_hold(hold, move * np.array(plate.pitch), move * ratio)
+        for hold, move in zip(holds, moves, strict=True)
+    ]
+    return moved(table, moves, plate), out
+
+
+def move_hold(hold: StrappedHold, by: Array, holes: IntArray) -> StrappedHold:
+    """Straps and the push moved by a length (2,) in mm, which are so many holes (2,) for bolts."""
+    dx, dy = by.tolist()
+    straps = tuple(
+        Strap(
+            (one.hole[0] + int(holes[0]), one.hole[1] + int(holes[1])),
+            (one.at[0] + dx, one.at[1] + dy),
+            one.height,
+        )
+        for one in hold.straps
+    )
+    push = hold.push
+    there = (
+        None
+        if push is None
+        else HandPush((push.at[0] + dx, push.at[1] + dy), push.direction_deg, push.shares)
+    )
+    return evolve(hold, straps=straps, push=there)

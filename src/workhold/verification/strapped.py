@@ -1,0 +1,436 @@
+"""Seats under straps, derived anew: poses in balls, the push by hand, where straps stand, and the force they need.
+
+A seat is proven from its holes and faces alone, in ball arithmetic. Straps and push are derived from the loops of the
+part, and the force from another method (``verification.jaw_forces``) with the foot's moments from Green's theorem.
+That straps are the best of all places is not shown here; answering the query again shows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from itertools import combinations, pairwise
+from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
+
+import numpy as np
+from attrs import field, frozen
+from flint import arb, arb_mat, ctx
+from numpy.typing import NDArray
+
+from workhold.fixels.strap_set import StrapSet
+from workhold.geometry.loop import loop_segments
+from workhold.geometry.segment import Arc, Segment, measure_distance_to_segment
+from workhold.model.fixture import Fixture
+from workhold.model.friction import find_friction_coefficient
+from workhold.model.own_outlines import measure_outline_diameter
+from workhold.model.pose import Pose
+from workhold.model.query import Query
+from workhold.model.requirements import Load
+from workhold.model.straps import Strap, StrappedHold
+from workhold.model.support_request import SupportRequest
+from workhold.verification.ball_geometry import PRECISIONS, BallOutline, cross
+from workhold.verification.contacts import BallContact, BallPose, every_outline, met_by
+from workhold.verification.foot import Foot
+from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, PressingJaw, UnsettledError, wrench
+from workhold.verification.placing import faces_avoided, gap_findings, proven_pose, written_pose
+from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.tolerances import AGREEMENT, Finding
+from workhold.verification.touching import touching_findings
+
+__all__ = ["StrapJudge"]
+
+Array = NDArray[np.float64]
+# No unit. The determinant of three locators' wrenches is above this.
+LEAST_SEAT = 1e-6
+# Parts of a force, and N, by which it may differ; with arcs, and of a range of directions, by more.
+FORCE_PART, FORCE_HAIR, ARC_PART, RANGE_PART = 1e-3, 1e-3, 5e-3, 0.012
+# Directions of a range that are looked at, and of friction at a tip.
+DIRECTIONS, WAYS = 64, 16
+# Degrees. How far from square to the outline a hand pushes, with rounding, and of direction and place.
+MOST_ASLANT, ON_OUTLINE = 60.0 + 1e-6, 1e-6
+# mm. How far beside the kern the middle of the tips may be by rounding.
+KERN_SLACK = 1e-6
+
+
+@frozen(eq=False)
+class StrapJudge:
+    """Derives the fixtures of a query whose toolkit has straps."""
+
+    query: Query
+    seen: dict[tuple[object, ...], int] = field(factory=dict, init=False)
+
+    @property
+    def straps(self) -> StrapSet:
+        straps = self.query.toolkit.strap_set
+        assert straps is not None
+        return straps
+
+    @cached_property
+    def hardware(self) -> ToolkitRules:
+        return ToolkitRules.of(self.query)
+
+    @cached_property
+    def wrench_length(self) -> float:
+        """L of the wrenches in mm, half the diameter of the peg-centre locus."""
+        return measure_outline_diameter(self.query.workpiece) / 2 + self.query.toolkit.plates[0].peg_radius
+
+    @cached_property
+    def outline(self) -> BallOutline:
+        with ctx.workprec(PRECISIONS[0]):
+            return every_outline(self.query.workpiece)
+
+    @cached_property
+    def request(self) -> SupportRequest:
+        """The faces that tips and plate may touch."""
+        known = self.query.part_height
+        return SupportRequest.of(
+            self.query.workpiece,
+            1.0 if known is None else self.query.thickness,
+            tip_radius=self.straps.tip_radius,
+        )
+
+    def faults(self, fixture: Fixture, place: int) -> Iterator[str]:
+        """What is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
+        hold = fixture.hold
+        if not isinstance(hold, StrappedHold):
+            yield "it is not held by straps"
+            return
+        plate = self.query.toolkit.plates[0]
+        holes = [(peg.column, peg.row) for peg in fixture.pegs]
+        if len(set(holes)) != 3:
+            yield "its three locators do not stand in three holes"
+            return
+        for column, row in holes:
+            if not (0 <= column < (plate.columns or inf) and 0 <= row < (plate.rows or inf)):
+                yield f"hole {plate.place_name(column, row)} is not on the plate"
+                return
+        known = {face.number for face in self.query.workpiece.numbered.faces}
+        if not known.issuperset(peg.face for peg in fixture.pegs):
+            yield "a locator is on a segment that does not name a face"
+            return
+        if faces_avoided(self.query) & {peg.face for peg in fixture.pegs}:
+            yield "a locator touches a face that is to be avoided"
+        touched = {peg.face for peg in fixture.pegs}
+        if not touched.issuperset(self.query.restrictions.touch):
+            yield "a face that is to be touched is not"
+        angles, theta = self.query.restrictions.angles, fixture.pose.theta_deg
+        if angles and not any((theta - low + 1e-6) % 360 <= high - low + 2e-6 for low, high in angles):
+            yield f"the part is turned by {theta:g} degrees, which is not asked for"
+        with ctx.workprec(PRECISIONS[1]):
+            yield from self.seat_faults(fixture)
+        keys = self.keys_of(fixture)
+        earlier = [self.seen[key] for key in keys if key in self.seen]
+        if earlier:
+            yield f"it is the same as fixture {earlier[0] + 1}"
+        for key in keys:
+            self.seen.setdefault(key, place)
+        yield from self.zone_faults(fixture)
+        if hold.is_looked_at:
+            yield from self.push_faults(fixture, hold)
+            yield from self.strap_faults(fixture, hold)
+
+    def keys_of(self, fixture: Fixture) -> list[tuple[object, ...]]:
+        """What distinguishes a seat, and after half a turn where that makes no other."""
+        plate, pose = self.query.toolkit.plates[0], fixture.pose
+        column, row = (min(getattr(peg, name) for peg in fixture.pegs) for name in ("column", "row"))
+        holes = sorted((peg.column - column, peg.row - row) for peg in fixture.pegs)
+        x, y = plate.place(column, row)
+        at = np.array([pose.x - x, pose.y - y])
+        out = [(round(pose.theta_deg, 4) % 360, tuple(holes), *(at.round(4) + 0.0).tolist())]
+        if self.query.toolkit.half_turned is not None:
+            wide, high = (max(hole[k] for hole in holes) for k in (0, 1))
+            turned = sorted((wide - a, high - b) for a, b in holes)
+            there = np.array([wide * plate.pitch[0], high * plate.pitch[1]]) - at
+            out.append(
+                (round(pose.theta_deg + 180, 4) % 360, tuple(turned), *(there.round(4) + 0.0).tolist())
+            )
+        return list(out)
+
+    def seat_faults(self, fixture: Fixture) -> Iterator[str]:
+        """Whether three locators touch their faces in the pose, inside them, and fix it."""
+        outline, hardware = self.outline, self.hardware
+        contacts = hardware.contacts(fixture, outline)
+        touching = [
+            (name, contact, peg.face, met_by(outline, peg.carrier))
+            for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
+        ]
+        yield from definite(gap_findings([one[:3] for one in touching], written_pose(fixture.pose, [])))
+        proven, doubts = proven_pose(contacts, fixture.pose, {})
+        yield from (doubt.reason for doubt in doubts)
+        if proven is None:
+            return
+        for name, contact, face, met in touching:
+            found = touching_findings(name, contact, face, proven, met, self.query.contact_margin)
+            yield from definite(found)
+        size = abs(determinant(contacts, proven)) / self.wrench_length
+        if not size > LEAST_SEAT * (1 - 1e-6):
+            yield "the three locators do not fix the pose: it is a double solution, or nearly"
+
+    def zone_faults(self, fixture: Fixture) -> Iterator[str]:
+        """Whether locators stand off the keep-out zones."""
+        back, radius = fixture.pose.inverse, self.query.toolkit.plates[0].body_radius
+        for zone in self.query.restrictions.zones:
+            loop = loop_segments(zone.loop)
+            for peg in fixture.pegs:
+                point = back.apply(peg.x, peg.y)
+                if is_inside(point, [loop]) or distance_to(point, loop) < radius - AGREEMENT:
+                    yield f"locator {peg.hole} stands in a keep-out zone"
+
+    def push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+        """Whether the push by hand is on the outline, near enough to square, and presses all locators."""
+        push = hold.push
+        if push is None:
+            return
+        workpiece, pose = self.query.workpiece, fixture.pose
+        outer = [pose.carry(one) for one in workpiece.segments[: workpiece.outer_count]]
+        near = [one for one in outer if measure_distance_to_segment(push.at, one) <= ON_OUTLINE]
+        if not near:
+            yield "the push by hand is not at the outline"
+            return
+        off = [aslant(one, push.at, push.direction_deg) for one in near]
+        # At a corner a hand pushes between both inward normals, or within reach of either.
+        if min(map(abs, off)) > MOST_ASLANT and not (min(off) < 0 < max(off)):
+            yield "the push by hand is more than 60 degrees from square to the outline"
+        turn = radians(push.direction_deg)
+        points, inward = contacts_in(fixture, self.query)
+        rows = np.array(
+            [[*way, p[0] * way[1] - p[1] * way[0]] for p, way in zip(points, inward, strict=True)]
+        )
+        x, y = push.at
+        load = np.array([cos(turn), sin(turn), x * sin(turn) - y * cos(turn)])
+        shares = np.linalg.solve(rows.T, -load)
+        if shares.min() <= 0:
+            yield "the push by hand does not press the part against all three locators"
+        if push.shares and np.abs(shares - push.shares).max() > 1e-6:
+            yield "the push by hand presses locators otherwise than is written"
+
+    def strap_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+        """Whether straps stand where they may, press the part flat, and need the force that is written."""
+        if not hold.straps:
+            return
+        if len(hold.straps) != self.straps.count:
+            yield f"{len(hold.straps)} straps hold it, and {self.straps.count} are asked for"
+            return
+        for number, one in enumerate(hold.straps, 1):
+            yield from (f"strap {number} {words}" for words in self.place_faults(fixture, one))
+        for one, other in combinations(hold.straps, 2):
+            if one.hole == other.hole:
+                yield "two straps have their bolts in one hole"
+            if (
+                hypot(one.at[0] - other.at[0], one.at[1] - other.at[1])
+                < 2 * self.straps.tip_radius - AGREEMENT
+            ):
+                yield "the tips of two straps overlap"
+        foot = self.foot(fixture.pose)
+        middle = np.mean([one.at for one in hold.straps], axis=0)
+        if foot.pressure_at(middle).min() * foot.area < -KERN_SLACK:
+            yield "the straps alone do not press the part flat on the plate"
+        yield from self.force_faults(fixture, hold, foot)
+
+    def place_faults(self, fixture: Fixture, strap: Strap) -> Iterator[str]:
+        """Whether the bolt of a strap stands free in a hole, and its tip on the part's face with the foot below."""
+        straps, plate, workpiece = self.straps, self.query.toolkit.plates[0], self.query.workpiece
+        bolts, (column, row) = straps.bolts, strap.hole
+        if not (0 <= column < (bolts.columns or inf) and 0 <= row < (bolts.rows or inf)):
+            yield "has its bolt in a hole that is not there"
+            return
+        x, y = (float(value) for value in bolts.place(column, row))
+        far = hypot(strap.at[0] - x, strap.at[1] - y)
+        if not straps.reach[0] - AGREEMENT <= far <= straps.reach[1] + AGREEMENT:
+            yield f"reaches {far:.6g} mm from its bolt, which it does not"
+        room = plate.peg_radius if straps.is_on_dowel_holes else 2 * plate.peg_radius
+        if any(hypot(peg.x - x, peg.y - y) < room - AGREEMENT for peg in fixture.pegs):
+            yield "has its bolt where a locator stands"
+        back = fixture.pose.inverse
+        bolt, tip = back.apply(x, y), back.apply(*strap.at)
+        loops = workpiece.loop_segments
+        if (
+            is_inside(bolt, loops)
+            or min(distance_to(bolt, loop) for loop in loops) < plate.peg_radius - AGREEMENT
+        ):
+            yield "has its bolt in the part"
+        for name, face in (("upper face", self.request.top), ("foot", self.request.bottom)):
+            borders = loops if face is None else [loop_segments(np.asarray(loop)) for loop in face]
+            room = min((distance_to(tip, loop) for loop in borders), default=-1.0)
+            if not is_inside(tip, borders) or room < straps.tip_radius - AGREEMENT:
+                yield f"has its tip not wholly over the part's {name}"
+        for zone in self.query.restrictions.zones:
+            loop = loop_segments(zone.loop)
+            if is_inside(tip, [loop]) or distance_to(tip, loop) < straps.tip_radius - AGREEMENT:
+                yield "has its tip in a keep-out zone"
+        high = self.request.clamped_height((float(tip[0]), float(tip[1])))
+        if abs(strap.height - high) > AGREEMENT:
+            yield f"has its heel {strap.height:.6g} mm high, and the face under its tip is {high:.6g} mm high"
+
+    def foot(self, pose: Pose) -> Foot:
+        """The foot of the part on the plate."""
+        loops = self.request.bottom
+        if loops is None:
+            some: Sequence[Sequence[Segment]] = self.query.workpiece.loop_segments
+        else:
+            some = [loop_segments(np.asarray(loop)) for loop in loops]
+        return Foot([[pose.carry(segment) for segment in loop] for loop in some])
+
+    def force_faults(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> Iterator[str]:
+        """Whether each load asks for the force that is written."""
+        if len(hold.clamp_needed_each) != len(self.query.loads):
+            yield f"{len(hold.clamp_needed_each)} forces are written for {len(self.query.loads)} loads"
+            return
+        has_arcs = any(isinstance(one, Arc) for one in self.query.workpiece.segments)
+        held, centre = self.held(fixture, hold, foot)
+        weight = self.weight(foot, centre)
+        for number, (load, written) in enumerate(
+            zip(self.query.loads, hold.clamp_needed_each, strict=True), 1
+        ):
+            part = (ARC_PART if has_arcs else FORCE_PART) + (RANGE_PART if is_range(load) else 0.0)
+            try:
+                found = self.needed(held, load, fixture.pose, centre, weight)
+            except UnsettledError:
+                continue
+            if (found is None) != (written is None):
+                yield f"load {number} asks for {words_of(found)}, not {words_of(written)}"
+            elif found is None or written is None:
+                continue
+            elif abs(found - written) > FORCE_HAIR + part * max(found, written):
+                yield f"load {number} asks for {found:.6g} N of each strap, not {written:.6g} N"
+
+    def held(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> tuple[HeldBetweenJaws, Array]:
+        """The part between plate and tips, and the centre (3,) that moments are taken about."""
+        centre = np.array([*foot.centre, 0.0])
+        below = foot.pressing(find_friction_coefficient(self.query.friction, "plate"), centre)
+        places = np.array([[*one.at, one.height] for one in hold.straps]) - centre
+        turns = [2 * pi * k / WAYS for k in range(WAYS)]
+        rubbing = np.stack([wrench(places, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
+        tips = PressingJaw(
+            wrench(places, (0.0, 0.0, -1.0)).sum(axis=0)[None],
+            rubbing,
+            np.full((1, len(places)), find_friction_coefficient(self.query.friction, "tip")),
+        )
+        points, inward = contacts_in(fixture, self.query)
+        workpiece = self.query.workpiece
+        bands = self.request.for_fixture(fixture, workpiece.solid, numbered=workpiece.numbered).peg_bands(3)
+        free = [
+            wrench(np.array([[*point, z]]) - centre, (float(way[0]), float(way[1]), 0.0))[0]
+            for point, way, band in zip(points, inward, bands, strict=True)
+            for z in band
+        ]
+        return HeldBetweenJaws(below, tips, np.array(free)), centre
+
+    def weight(self, foot: Foot, centre: Array) -> Array:
+        """The wrench (6,) of the part's weight, at the middle of its foot."""
+        down = wrench(np.array([[*foot.centre, 0.0]]) - centre, (0.0, 0.0, -1.0))[0]
+        return np.asarray((self.query.weight or 0.0) * down)
+
+    def needed(
+        self, held: HeldBetweenJaws, load: Load, pose: Pose, centre: Array, weight: Array
+    ) -> float | None:
+        """The force of each strap in N that a load asks for; None where none is enough."""
+        height = self.query.part_height if load.height is None else load.height
+        turn, factor = radians(pose.theta_deg), self.query.safety_factor
+        low, high = (radians(one) for one in load.directions)
+        count = DIRECTIONS if high > low and load.force else 0
+        ways = [low + (high - low) * k / max(count, 1) for k in range(count + 1)]
+        most = 0.0
+        for x, y in load.points or ((0.0, 0.0),):
+            at = np.array([[*pose.apply(x, y), height or 0.0]], float) - centre
+            for way in ways:
+                force = load.force * cos(way + turn), load.force * sin(way + turn), load.upward
+                row = wrench(at, force)[0]
+                row[5] += load.moment / LENGTH
+                found = held.answer(row * factor + weight)
+                if found is None:
+                    return None
+                most = max(most, found[0])
+        return most
+
+    def order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
+        """A fault for a fixture that what comes first puts before the one before it."""
+        rows = [class_of(one.hold) for one in fixtures if isinstance(one.hold, StrappedHold)]
+        for place, (before, after) in enumerate(pairwise(rows), 2):
+            if after < before:
+                yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"
+                return
+
+
+def class_of(hold: StrappedHold) -> int:
+    """What seats are ordered by first: held, not looked at, not held, and unfit."""
+    if hold.is_unfit:
+        return 3
+    if not hold.is_looked_at:
+        return 1
+    return 2 if hold.holds_nothing else 0
+
+
+def words_of(force: float | None) -> str:
+    return "a force that none is enough for" if force is None else f"{force:.6g} N"
+
+
+def is_range(load: Load) -> bool:
+    return bool(load.force) and load.directions[1] > load.directions[0]
+
+
+def definite(findings: Iterator[Finding]) -> Iterator[str]:
+    """The reasons of what certainly refutes."""
+    return (one.reason for one in findings if one.definite)
+
+
+def determinant(contacts: Sequence[BallContact], pose: BallPose) -> arb:
+    """The determinant of the wrenches (n, q x n) of three contacts, in mm."""
+    rows = [(contact.outward(pose), contact.in_part(pose)) for contact in contacts]
+    return arb_mat([[*normal, cross(point, normal)] for normal, point in rows]).det()
+
+
+def contacts_in(fixture: Fixture, query: Query) -> tuple[list[tuple[float, float]], list[Array]]:
+    """Where locators touch the part on the plate, and the unit directions in which they push."""
+    faces = {face.number: face.segment for face in query.workpiece.numbered.faces}
+    points, inward = list[tuple[float, float]](), list[Array]()
+    for peg in fixture.pegs:
+        side = fixture.pose.carry(faces[peg.face])
+        if isinstance(side, Arc):
+            away = np.array([peg.x - side.center[0], peg.y - side.center[1]])
+            unit = away / np.hypot(*away)
+            point = np.array(side.center) + side.radius * unit
+            outward = unit if side.sign > 0 else -unit
+        else:
+            outward = np.array(side.normal())
+            start = np.array(side.start)
+            point = np.array([peg.x, peg.y]) - outward * float(outward @ (np.array([peg.x, peg.y]) - start))
+        points.append((float(point[0]), float(point[1])))
+        inward.append(-outward)
+    return points, inward
+
+
+def aslant(segment: Segment, point: tuple[float, float], direction_deg: float) -> float:
+    """How far in degrees a direction is from the inward normal of a segment at a point, counter-clockwise positive."""
+    if isinstance(segment, Arc):
+        away = np.array([point[0] - segment.center[0], point[1] - segment.center[1]])
+        nx, ny = segment.sign * away / np.hypot(*away)
+    else:
+        nx, ny = segment.normal()
+    return (direction_deg - degrees(atan2(-ny, -nx)) + 180.0) % 360.0 - 180.0
+
+
+def distance_to(point: tuple[float, float], loop: Sequence[Segment]) -> float:
+    """The distance of a point from a loop, in mm."""
+    return min(measure_distance_to_segment((float(point[0]), float(point[1])), one) for one in loop)
+
+
+def is_inside(point: tuple[float, float], loops: Sequence[Sequence[Segment]]) -> bool:
+    """Whether a point is within an odd number of loops: by the turns of their chords about it."""
+    x, y = float(point[0]), float(point[1])
+    count = 0
+    for loop in loops:
+        total = 0.0
+        for one in loop:
+            pieces = 1 if not isinstance(one, Arc) else 64
+            for k in range(pieces):
+                ends = [one.at(way(one) * one.half_extent * (2 * j / pieces - 1.0)) for j in (k, k + 1)]
+                (ax, ay), (bx, by) = ((end[0] - x, end[1] - y) for end in ends)
+                total += atan2(ax * by - ay * bx, ax * bx + ay * by)
+        count += abs(round(total / (2 * pi)))
+    return count % 2 == 1
+
+
+def way(segment: Segment) -> float:
+    """In which way a segment's parameter runs along it."""
+    return segment.sign if isinstance(segment, Arc) else 1.0

@@ -1,0 +1,141 @@
+"""A verification derives seats under straps, their push and the force, and sees a fault in each rule."""
+
+import json
+
+import pytest
+
+import workhold
+from workhold import Load, Restrictions, StrapPlate, Workpiece, circle_zone
+from workhold.verification import verify, verify_file
+
+BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
+ROUNDED = Workpiece.from_loops(
+    "rounded", [[[0, 0, 0], [70, 0, 1], [70, 50, 0], [0, 50, 0]], [[30, 25, -1], [46, 25, -1]]]
+)
+LOADS = (
+    Load(points=(50, 30), force=300, directions=20),
+    Load(points=(20, 20), force=120, directions=(0, 60), moment=900, height=20),
+    Load(points=(40, 25), force=50, directions=90, upward=60),
+)
+PLATE = StrapPlate(20, 3, 8, 6)
+
+
+@pytest.mark.parametrize(
+    ("part", "plate", "asked"),
+    [
+        (BLOCK, PLATE, {}),
+        (BLOCK, StrapPlate(20, 3, straps=1), {"weight": 12.0}),
+        (BLOCK, StrapPlate(20, 3, 8, 6, bolt_pitch=10, bolt_offset=5, straps=3), {"friction": {"tip": 0.2}}),
+        (ROUNDED, PLATE, {"safety": 1.5}),
+        (BLOCK, PLATE, {"restrictions": Restrictions(zones=(circle_zone(50, 30, 14),), avoid=(1,))}),
+    ],
+    ids=["block", "one strap", "own bolts", "rounded", "zone"],
+)
+def test_every_seat_is_proven(part, plate, asked):
+    result = workhold.design(part, plate, loads=LOADS, thickness=25, strapped=2, best=60, **asked)
+    assert result[0].hold.clamp_needed
+    outcome = verify(result)
+    assert outcome.holds and outcome.proven == outcome.fixtures > 0, outcome.unproven[:2] or outcome.faults
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    result = workhold.design(BLOCK, PLATE, loads=LOADS, thickness=25, strapped=2, best=6)
+    path = tmp_path_factory.mktemp("straps") / "block.json"
+    workhold.save(result, path)
+    return path
+
+
+def turn_pose(fixture):
+    fixture["pose"]["theta_deg"] += 0.01
+
+
+def move_hole(fixture):
+    peg = fixture["pegs"][2]
+    peg["column"], peg["x"] = peg["column"] + 1, peg["x"] + 20
+
+
+def change_face(fixture):
+    fixture["pegs"][0]["segment"] = 1
+
+
+def push_elsewhere(fixture):
+    fixture["push"]["at"][0] += 4.0
+    fixture["push"]["at"][1] += 4.0
+
+
+def push_away(fixture):
+    fixture["push"]["direction_deg"] = (fixture["push"]["direction_deg"] + 120.0) % 360
+
+
+def share_hole(fixture):
+    fixture["straps"][1]["hole"] = fixture["straps"][0]["hole"]
+
+
+def lift_heel(fixture):
+    fixture["straps"][0]["heel"] += 2.0
+
+
+def move_tip(fixture):
+    fixture["straps"][0]["at"][0] += 3.0
+
+
+def need_less(fixture):
+    need = fixture["quality"]["clamp_needed_each"]
+    need[0] *= 0.97
+
+
+def hold_all(fixture):
+    fixture["quality"]["clamp_needed_each"][2] = None
+
+
+def overlap_tips(fixture):
+    fixture["straps"][1]["at"] = [fixture["straps"][0]["at"][0] + 5.0, fixture["straps"][0]["at"][1]]
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        turn_pose,
+        move_hole,
+        change_face,
+        push_elsewhere,
+        push_away,
+        share_hole,
+        lift_heel,
+        move_tip,
+        need_less,
+        hold_all,
+        overlap_tips,
+    ],
+    ids=lambda fault: fault.__name__,
+)
+def test_a_fault_in_a_file_is_seen(written, tmp_path, fault):
+    data = json.loads(written.read_text())
+    fault(data["fixtures"][0])
+    path = tmp_path / "faulty.json"
+    path.write_text(json.dumps(data))
+    outcome = verify_file(path)
+    assert not outcome.holds and [one.index for one in outcome.unproven] == [0], outcome
+
+
+def test_a_seat_listed_twice_and_a_wrong_order_are_seen(written, tmp_path):
+    data = json.loads(written.read_text())
+    data["fixtures"][5] = data["fixtures"][4]
+    path = tmp_path / "twice.json"
+    path.write_text(json.dumps(data))
+    assert "same as fixture 5" in verify_file(path).unproven[0].reason
+    data = json.loads(written.read_text())
+    data["fixtures"][1], data["fixtures"][4] = data["fixtures"][4], data["fixtures"][1]
+    path.write_text(json.dumps(data))
+    assert any("better than the one before" in fault for fault in verify_file(path).faults)
+
+
+def test_a_complete_verification_finds_what_is_missing_and_better_straps(written, tmp_path):
+    """Answering the query again compares seats, counts and the best force."""
+    assert workhold.verify(workhold.open(written)).holds
+    data = json.loads(written.read_text())
+    data["found"]["strapped"] -= 1
+    path = tmp_path / "fewer.json"
+    path.write_text(json.dumps(data))
+    assert not workhold.verify(workhold.open(path), complete=True).holds
