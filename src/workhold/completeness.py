@@ -213,7 +213,7 @@ def seat_differences(listing: Listing, result: Result) -> Iterator[str]:
             yield f"the seat {' '.join(peg.hole for peg in one.pegs)} at {key[0]:g} degrees is not found anew"
     if listing.complete:
         for name in ("found", "distinct"):
-            yield from other_numbers(name, getattr(listing, name), getattr(result, name))
+            yield from find_other_numbers(name, getattr(listing, name), getattr(result, name))
 
 
 def seat_key(fixture: Fixture, plate: Carrier) -> tuple[float, tuple[int, ...], float, float]:

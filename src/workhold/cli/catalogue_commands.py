@@ -210,7 +210,7 @@ def format_field_value(form: Form, value: Any, unit: Unit) -> str:
     if form == "directions":
         return " or ".join(one if isinstance(one, str) else " and ".join(one) for one in value)
     if form == "pitch":
-        return f"{pitch_words(value, unit)} {unit.abbreviation}"
+        return f"{format_pitch(value, unit)} {unit.abbreviation}"
     lengths = value if isinstance(value, tuple) else (value,)
     return f"{' to '.join(unit.format_short_length(one, unit.decimals + 1) for one in lengths)} {unit.abbreviation}"
 

@@ -269,9 +269,9 @@ def make_family_queries(
         for remark in read.loaded.remarks:
             print_remark(f"{job.name}: {remark}")
         unit = read_unit(job.reading.unit)
-        read_arguments = job.words.read_arguments(unit)
-        read_arguments["tolerance"] = add_dowel_fit(read_arguments["tolerance"], tolerance)
-        read_arguments["rank_by"] = read_arguments["rank_by"] or (None if toolkit.holds_by_friction else usual)
+        asked = job.words.read_arguments(unit)
+        asked["tolerance"] = add_dowel_fit(asked["tolerance"], tolerance)
+        asked["rank_by"] = asked["rank_by"] or (None if toolkit.holds_by_friction else usual)
         workpiece = read.loaded.workpiece
         try:
             refuse_unsure_numbers(read.loaded, asked["restrictions"].avoid, CALLED)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from workhold.cli.table import Table
-from workhold.presenting.figure_words import rounded
+from workhold.presenting.figure_words import format_rounded
 from workhold.units import Unit
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tab
         if hold.is_unfit or hold.holds_nothing:
             table.red.add(len(table.rows))
         need = hold.clamp_needed
-        force = "-" if need is None else rounded(need / unit.newtons, 0)
+        force = "-" if need is None else format_rounded(need / unit.newtons, 0)
         bolts = " ".join(straps.bolts.place_name(*one.hole) for one in hold.straps) or "-"
         push = (
             "?" if not hold.is_looked_at else "none" if hold.push is None else f"{hold.push.direction_deg:g}°"
@@ -50,7 +50,7 @@ def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tab
         table.add_row(
             str(index + 1),
             " ".join(peg.hole for peg in fixture.pegs),
-            rounded(fixture.pose.written_deg, 3),
+            format_rounded(fixture.pose.written_deg, 3),
             *((force, bolts) if has_loads else ()),
             push,
             unit.number(quality["location_error"]),
@@ -85,7 +85,7 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
     pegs = Table(("hole", f">x {short}", f">y {short}", ">face"))
     for peg in fixture.pegs:
         pegs.add_row(peg.hole, unit.number(peg.x), unit.number(peg.y), str(peg.face))
-    angle = rounded(fixture.pose.written_deg, 6)
+    angle = format_rounded(fixture.pose.written_deg, 6)
     tables: list[Table | str] = [
         f"Fixture {rank} of {total}: part turned by {angle} degrees",
         *(f"{step}." for step in list_steps(hold, fixture, asked, unit)),
@@ -103,12 +103,11 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
     if hold.clamp_needed_each:
         needs = Table((">load", "name", f">force of each strap {unit.force}"))
         for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
-            text = "no force holds it" if need is None else rounded(need / unit.newtons, 1)
+            text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
             needs.add_row(str(number), load.name, text)
         tables += ["", reckoned_with(asked), needs]
     quality = fixture.quality
-    tables.append(
-        f"Location error {unit.text(quality['location_error'])}; nearest edge {unit.text(quality['edge_distance'])}."
-    )
+    error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))
+    tables.append(f"Location error {error}; nearest edge {edge}.")
     said = list_warnings(hold, asked, unit)
     return (*tables, *(f"{words[:1].upper()}{words[1:]}" for words in said))

@@ -257,7 +257,9 @@ def draw_cell(scene: Scene, bench: Bench, title: str, cell: Box, view: View, len
     fixture, width = bench.fixture, cell.width - 20
     kind = bench.toolkit.find_arrangement(fixture.type, fixture.direction).short_title
     if isinstance(fixture.hold, JawHold):
-        kind = f"on {lengths.format_short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
+        kind = (
+            f"on {lengths.format_short(fixture.hold.parallels)}" if fixture.hold.parallels else "on the bed"
+        )
     name = shorten_text(title, 15, width - measure_text(kind, 13, bold=True) - 10, bold=True)
     group.add_text((cell.x0 + 10, cell.y1 - 30), name, 15, bold=True)
     group.add_text((cell.x1 - 10, cell.y1 - 30), kind, 13, "end", bold=True)

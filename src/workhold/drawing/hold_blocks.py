@@ -42,9 +42,11 @@ def draw_hold_panel(
         return
     hold, jaws, query = fixture.hold, toolkit.flat_jaws, find_query(fixture)
     assert isinstance(hold, JawHold) and jaws is not None
-    column.format_length("Opening S of the jaws", 13, fill=GREY, gap=0.8)
-    column.format_length(lengths.format_length(hold.opening), 30, bold=True, gap=0.4)
-    column.write_fact("Parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed")
+    column.write_line("Opening S of the jaws", 13, fill=GREY, gap=0.8)
+    column.write_line(lengths.format_length(hold.opening), 30, bold=True, gap=0.4)
+    column.write_fact(
+        "Parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed"
+    )
     column.write_fact("Fixed jaw on", describe_touched_faces(hold.fixed))
     column.write_fact("Moving jaw on", describe_touched_faces(hold.moving))
     column.write_fact("Work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none")
@@ -113,16 +115,21 @@ def write_setting(column: TextColumn, sheet: Sheet) -> None:
     assert isinstance(hold, JawHold) and jaws is not None
     write_heading(column, "Set up")
     column.write_fact(
-        "parallels", lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed", 20, bold=True
+        "parallels",
+        lengths.format_short(hold.parallels) if hold.parallels else "none, on the bed",
+        20,
+        bold=True,
     )
-    column.write_fact("opening S", lengths.words(hold.opening), 20, bold=True)
+    column.write_fact("opening S", lengths.format_length(hold.opening), 20, bold=True)
     column.write_fact("on the fixed jaw", describe_touched_faces(hold.fixed), bold=True)
     column.write_fact("the moving jaw presses", describe_touched_faces(hold.moving), bold=True)
-    column.write_fact("work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none", bold=True)
+    column.write_fact(
+        "work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none", bold=True
+    )
     ends = min(hold.fixed.ends[0], hold.moving.ends[0]), max(hold.fixed.ends[1], hold.moving.ends[1])
     column.write_fact(
         "gripped along the jaws",
-        f"{lengths.short_number(ends[0], 5)} to {lengths.format_short(ends[1], 5)}",
+        f"{lengths.format_short_number(ends[0], 5)} to {lengths.format_short(ends[1], 5)}",
         bold=True,
     )
     column.write_fact("opening S", lengths.format_length(hold.opening), 20, bold=True)

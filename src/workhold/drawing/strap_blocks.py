@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from workhold.drawing.panel import TextColumn
-from workhold.drawing.scene import GREY, LengthUnit, degrees_text
-from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, heading
+from workhold.drawing.scene import GREY, LengthUnit, format_degrees
+from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, Writer, write_heading
 from workhold.model.fixture import Fixture
 from workhold.model.hold_words import set_force
 from workhold.model.straps import StrappedHold
@@ -28,32 +28,32 @@ def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) 
     """Writes what to set and what follows, for a picture."""
     hold, asked = hold_of(fixture)
     write_force_needed(column, hold, lengths, 30)
-    column.fact("Locators in", ", ".join(peg.hole for peg in fixture.pegs), bold=True)
-    column.fact("on faces", ", ".join(str(peg.face) for peg in fixture.pegs))
-    column.fact("Part turned by θ", degrees_text(fixture.pose.written_deg, 3))
-    column.rule()
+    column.write_fact("Locators in", ", ".join(peg.hole for peg in fixture.pegs), bold=True)
+    column.write_fact("on faces", ", ".join(str(peg.face) for peg in fixture.pegs))
+    column.write_fact("Part turned by θ", format_degrees(fixture.pose.written_deg, 3))
+    column.draw_rule()
     write_strap_table(column, fixture, lengths)
     write_push(column, hold, lengths)
     for sentence in list_warnings(hold, asked, lengths.unit):
-        column.item("▲", f"{sentence[:1].upper()}{sentence[1:]}", 12.5)
+        column.write_item("▲", f"{sentence[:1].upper()}{sentence[1:]}", 12.5)
     if hold.clamp_needed_each:
-        column.paragraph(reckoned_with(asked), 11.5, fill=GREY)
-    column.rule()
+        column.write_paragraph(reckoned_with(asked), 11.5, fill=GREY)
+    column.draw_rule()
 
 
 def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUnit, size: float) -> None:
     """Writes the force of each strap, large, where it is known."""
     unit = lengths.unit
     if hold.clamp_needed is not None:
-        column.words("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
-        words = f"{unit.force_words(set_force(hold.clamp_needed))} or more"
-        column.words(words, size, bold=True, gap=0.4)
+        column.write_line("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
+        words = f"{unit.format_force(set_force(hold.clamp_needed))} or more"
+        column.write_line(words, size, bold=True, gap=0.4)
     elif hold.clamp_needed_each:
-        column.words("No force of the straps holds all loads", 15, bold=True, gap=0.6)
+        column.write_line("No force of the straps holds all loads", 15, bold=True, gap=0.6)
     if hold.slip_reserve is not None:
-        column.fact(
+        column.write_fact(
             "A strap is rated for",
-            f"{unit.force_words(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that",
+            f"{unit.format_force(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that",
         )
 
 
@@ -67,7 +67,7 @@ def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit)
         [bolts.place_name(*one.hole), *(lengths.number(value) for value in (*one.at, one.height))]
         for one in hold.straps
     ]
-    column.table(["bolt in", f"tip x {sign}", f"tip y {sign}", f"heel {sign}"], rows, BODY)
+    column.write_table(["bolt in", f"tip x {sign}", f"tip y {sign}", f"heel {sign}"], rows, BODY)
 
 
 def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> None:
@@ -75,8 +75,8 @@ def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> N
     if hold.push is None:
         return
     x, y = (lengths.number(value) for value in hold.push.at)
-    column.fact("Push by hand at", f"({x}, {y}) {lengths.sign}")
-    column.fact("towards", f"{degrees_text(hold.push.direction_deg, 1)} from x")
+    column.write_fact("Push by hand at", f"({x}, {y}) {lengths.sign}")
+    column.write_fact("towards", f"{format_degrees(hold.push.direction_deg, 1)} from x")
 
 
 def strap_writers() -> tuple[list[Writer], list[Writer]]:
@@ -85,23 +85,23 @@ def strap_writers() -> tuple[list[Writer], list[Writer]]:
 
 
 def write_places(column: TextColumn, sheet: Sheet) -> None:
-    heading(column, "Locators")
+    write_heading(column, "Locators")
     sign = sheet.lengths.sign
     rows = [
         [peg.hole, sheet.lengths.number(peg.x), sheet.lengths.number(peg.y), str(peg.face)]
         for peg in sheet.fixture.pegs
     ]
-    column.table(["hole", f"x {sign}", f"y {sign}", "face"], rows, BODY)
-    column.fact("part turned by θ", degrees_text(sheet.fixture.pose.written_deg, 3))
+    column.write_table(["hole", f"x {sign}", f"y {sign}", "face"], rows, BODY)
+    column.write_fact("part turned by θ", format_degrees(sheet.fixture.pose.written_deg, 3))
 
 
 def write_straps(column: TextColumn, sheet: Sheet) -> None:
     hold, _ = hold_of(sheet.fixture)
-    heading(column, "Straps")
+    write_heading(column, "Straps")
     if hold.straps:
         write_strap_table(column, sheet.fixture, sheet.lengths)
     else:
-        column.paragraph("None were chosen.", BODY)
+        column.write_paragraph("None were chosen.", BODY)
     write_push(column, hold, sheet.lengths)
 
 
@@ -109,19 +109,19 @@ def write_strap_force(column: TextColumn, sheet: Sheet) -> None:
     hold, asked = hold_of(sheet.fixture)
     if not hold.clamp_needed_each:
         return
-    heading(column, "Force")
+    write_heading(column, "Force")
     write_force_needed(column, hold, sheet.lengths, 20)
-    column.paragraph("The bolt carries more than the tip: the heel takes its share.", NOTE)
-    column.paragraph(reckoned_with(asked), NOTE)
+    column.write_paragraph("The bolt carries more than the tip: the heel takes its share.", NOTE)
+    column.write_paragraph(reckoned_with(asked), NOTE)
 
 
 def write_strap_steps(column: TextColumn, sheet: Sheet) -> None:
     hold, asked = hold_of(sheet.fixture)
-    heading(column, "Setting up")
+    write_heading(column, "Setting up")
     steps = ["Clean plate, locators and part", *list_steps(hold, sheet.fixture, asked, sheet.lengths.unit)]
     steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
     for number, step in enumerate(steps, 1):
-        column.item(f"{number}.", f"{step}.", BODY)
+        column.write_item(f"{number}.", f"{step}.", BODY)
 
 
 def write_strap_loads(column: TextColumn, sheet: Sheet) -> None:
@@ -129,19 +129,21 @@ def write_strap_loads(column: TextColumn, sheet: Sheet) -> None:
     query, unit = sheet.fixture.listing.result.query, sheet.lengths.unit
     if not hold.clamp_needed_each:
         return
-    heading(column, f"Force of each strap by load, {unit.force}")
+    write_heading(column, f"Force of each strap by load, {unit.force}")
     pairs = list(enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1))
     pairs.sort(key=lambda one: (one[1][1] is not None, -(one[1][1] or 0.0)))
     for number, (load, need) in pairs[:MOST_LOADS]:
-        size = f": {unit.force_words(load.force)}" if load.force else ""
+        size = f": {unit.format_force(load.force)}" if load.force else ""
         name = f"{load.name or f'load {number}'}{size}"
-        column.fact(name, "none holds it" if need is None else unit.force_number(need, 0), bold=True)
+        column.write_fact(
+            name, "none holds it" if need is None else unit.format_force_number(need, 0), bold=True
+        )
     if len(pairs) > MOST_LOADS:
-        column.paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)
+        column.write_paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)
 
 
 def write_seat(column: TextColumn, sheet: Sheet) -> None:
     quality, lengths = sheet.fixture.quality, sheet.lengths
-    heading(column, "The seat")
-    column.fact("location error", lengths.words(quality["location_error"]))
-    column.fact("nearest edge", lengths.short(quality["edge_distance"], 5))
+    write_heading(column, "The seat")
+    column.write_fact("location error", lengths.format_length(quality["location_error"]))
+    column.write_fact("nearest edge", lengths.format_short(quality["edge_distance"], 5))

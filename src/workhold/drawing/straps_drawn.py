@@ -27,25 +27,25 @@ def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, 
         hole = straps.bolts.place(*one.hole)
         start, tip = view((float(hole[0]), float(hole[1]))), view(one.at)
         far = heel_of(start, tip, radius)
-        group.line([far, tip], BAR_FILL, 1.5 * radius, stroke_linecap="round", stroke_opacity="0.55")
-        group.circle(tip, radius, "none", BLACK, 1.2 * weight)
-        group.circle(start, bolt, "#ffffff", BLACK, 1.6 * weight)
+        group.add_line([far, tip], BAR_FILL, 1.5 * radius, stroke_linecap="round", stroke_opacity="0.55")
+        group.add_circle(tip, radius, "none", BLACK, 1.2 * weight)
+        group.add_circle(start, bolt, "#ffffff", BLACK, 1.6 * weight)
         size = 0.6 * bolt
         for way in (1.0, -1.0):
             ends = [(start[0] - size, start[1] - way * size), (start[0] + size, start[1] + way * size)]
-            group.line(ends, BLACK, 1.0 * weight)
+            group.add_line(ends, BLACK, 1.0 * weight)
         if weight >= 1.0:
-            group.text((tip[0], tip[1] + 4), str(number), 11, "middle", bold=True)
+            group.add_text((tip[0], tip[1] + 4), str(number), 11, "middle", bold=True)
     if hold.push is not None:
         turn = radians(hold.push.direction_deg)
         x, y = view(hold.push.at)
         long = ARROW_LENGTH * weight
         start = x - long * cos(turn), y + long * sin(turn)
         hand = scene.group("push")
-        hand.arrow(start, (x, y), HAND, 2.4 * weight, 11 * weight)
+        hand.add_arrow(start, (x, y), HAND, 2.4 * weight, 11 * weight)
         if weight >= 1.0:
             beyond = start[0] - 9 * cos(turn), start[1] + 9 * sin(turn) + 4
-            hand.text(beyond, "hand", 11, "middle", fill=GREY, halo=3.0)
+            hand.add_text(beyond, "hand", 11, "middle", fill=GREY, halo=3.0)
 
 
 def heel_of(start: Point, tip: Point, radius: float) -> Point:

@@ -148,7 +148,7 @@ def choose_converter(row: ToolkitField) -> Callable[[Any], Any]:
         case "holes":
             return partial(convert_holes, carriers=row.carriers, noun=row.carrier_noun)
         case "pitch" if row.default is None:
-            both: Callable[[Any], Any] = optional(pair)
+            both: Callable[[Any], Any] = optional(convert_pitch)
             return both
         case form:
             return CONVERTERS[form]

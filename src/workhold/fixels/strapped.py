@@ -15,7 +15,7 @@ from attrs import evolve
 from workhold.errors import InputError
 from workhold.fixels import fields
 from workhold.fixels.carrier import Carrier
-from workhold.fixels.making import finer, lattice_carrier, made_from_table, settle
+from workhold.fixels.making import make_class_from_table, make_lattice_carrier, settle, suggest_half_pitch
 from workhold.fixels.setup_words import PageWords, SetupWords
 from workhold.fixels.strap_set import StrapSet
 from workhold.fixels.table import FieldTable, PageLabel
@@ -28,7 +28,7 @@ __all__ = ["StrapPlate"]
 ROUNDING = 1e-9
 
 
-@made_from_table
+@make_class_from_table
 class StrapPlate(Toolkit):
     """A plate with a lattice of holes: three locators in any of them, and straps over the part.
 
@@ -71,7 +71,7 @@ class StrapPlate(Toolkit):
             fields.STRAP_REACH,
             fields.BOLT_PITCH,
             fields.BOLT_OFFSET,
-            fields.MAX_FORCE.shown(
+            fields.MAX_FORCE.relabel(
                 PageLabel("Rated force of a strap in N", "not known"),
                 help="What each strap, or the vise, is rated for, in N or with its unit.",
             ),
@@ -191,7 +191,7 @@ class StrapPlate(Toolkit):
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
         """The plate alone: nothing moves."""
-        return (lattice_carrier(self, "plate", noun="plate", peg="locator"),)
+        return (make_lattice_carrier(self, "plate", noun="plate", peg="locator"),)
 
     @property
     def moving(self) -> Carrier:
@@ -231,4 +231,4 @@ class StrapPlate(Toolkit):
     def further_changes(self, unit: Unit) -> Iterator[Change]:
         """A finer lattice."""
         if self.bolt_pitch is None:
-            yield from finer(self)
+            yield from suggest_half_pitch(self)

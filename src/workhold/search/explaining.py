@@ -19,7 +19,7 @@ from workhold.contact.problem import Problem
 from workhold.errors import InputError, join_words
 from workhold.fixels.contacts import WALL_END
 from workhold.fixels.toolkit import Change, Toolkit
-from workhold.limits import thread_count
+from workhold.limits import choose_thread_count
 from workhold.listing.asked import are_as_asked
 from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
@@ -250,7 +250,7 @@ def count_removals_of_seats(query: Query, threads: int | None) -> Removals:
 def count_seats(query: Query, threads: int | None) -> int:
     """How many seats a query has; 0 where nothing is left to touch."""
     try:
-        return len(within_error(find_seats(query, thread_count(threads)).table, query))
+        return len(within_error(find_seats(query, choose_thread_count(threads)).table, query))
     except InputError:
         return 0
 

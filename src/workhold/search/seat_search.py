@@ -25,8 +25,8 @@ from workhold.kernels.contact.quality import figures
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.limits import MOST_WAYS
-from workhold.listing.canonical_form import changes, clusters
-from workhold.listing.results import Work, proof_of, stage
+from workhold.listing.canonical_form import mark_changes, split_into_clusters
+from workhold.listing.results import Work, make_proof, make_stage_progress
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
 from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, LOCATION_ERROR, SMALLEST_FACE, TILT
 from workhold.model.query import Query
@@ -87,7 +87,9 @@ def find_seats(
             f"{pitch[1]:g} mm apart can touch it in too many ways to look at: use a larger pitch, fewer columns and "
             "rows, or a small range of angles."
         )
-    records, done = run_blocks(blocks, threads, stage(progress, 0.0, FOUND), cancel, stop=search.stop)
+    records, done = run_blocks(
+        blocks, threads, make_stage_progress(progress, 0.0, FOUND), cancel, stop=search.stop
+    )
     contacts, account = decide_seats(
         np.concatenate(records) if records else np.zeros((0, RECORD_LENGTH)),
         problem,
@@ -101,7 +103,7 @@ def find_seats(
         int(search.totals[CANDIDATES]),
     )
     table = evolve(table, quality=measure_seats(table, query, problem))
-    return FoundSeats(table, proof_of(account, work), search.statistics, work.complete)
+    return FoundSeats(table, make_proof(account, work), search.statistics, work.complete)
 
 
 def make_locating_query(query: Query) -> Query:
@@ -165,7 +167,9 @@ def listed_once(table: FixtureTable, toolkit: Toolkit, query: Query) -> FixtureT
     by_holes = np.lexsort(keys)
     words = [one[by_holes] for one in (*table.column.T.astype(np.int64), *table.row.T.astype(np.int64))]
     place = table.position @ np.array([1.0, 0.7548776662])
-    order, fresh = clusters(by_holes, changes(words), (table.theta, SAME_POSE), (place, SAME_PLACE))
+    order, fresh = split_into_clusters(
+        by_holes, mark_changes(words), (table.theta, SAME_POSE), (place, SAME_PLACE)
+    )
     # A contact at a tangent joint is found on both faces: the seat has those of the lowest numbers.
     group = np.cumsum(fresh) - 1
     within = np.lexsort([*table.face[order].T[::-1], group])

@@ -19,7 +19,7 @@ from workhold.contact.problem import Progress
 from workhold.conventions import SQUARE_TILT
 from workhold.fixels.carrier import Carrier
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.listing.results import stage
+from workhold.listing.results import make_stage_progress
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import LeftUndecided, NoFixture, NoPlace, Note, Remark, Stage
 from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, LOCATION_ERROR, SMALLEST_FACE, TILT
@@ -56,11 +56,11 @@ def find_strapped_fixtures(
     query: Query, threads: int = 1, progress: Progress | None = None, cancel: Event | None = None
 ) -> Result:
     """Finds every seat of a part on the plate of a query, and the straps of the best of them."""
-    found = find_seats(query, threads, stage(progress, 0.0, SEATS), cancel)
+    found = find_seats(query, threads, make_stage_progress(progress, 0.0, SEATS), cancel)
     table = placed_on_plate(within_error(found.table, query), query)
     table = table.take(seat_order(table, query))
     whole = result_of(table, found, query)
-    holds, is_whole = strapped_holds(whole, stage(progress, SEATS, 1.0), cancel)
+    holds, is_whole = strapped_holds(whole, make_stage_progress(progress, SEATS, 1.0), cancel)
     order = final_order(holds, table, query)
     chosen = order[: query.best]
     table, holds = moved_into_view(table.take(np.array(order, np.int64)), [holds[k] for k in order], query)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from workhold.geometry.segment import Arc, Segment
-from workhold.verification.jaw_forces import PressingJaw, hull_of, wrench
+from workhold.verification.jaw_forces import PressingJaw, compute_wrenches, find_hull_corners
 
 __all__ = ["Foot"]
 
@@ -41,7 +41,7 @@ class Foot:
         self.sides = np.array([side for loop in loops for side in chords(loop)])
         low, high = self.extent
         self.area, self.centre, self.second = self.moments(low, high)
-        self.hull = hull_of([(float(x), float(y)) for x, y in self.sides[:, :2].round(9)])
+        self.hull = find_hull_corners([(float(x), float(y)) for x, y in self.sides[:, :2].round(9)])
 
     @property
     def extent(self) -> tuple[Array, Array]:
@@ -74,11 +74,11 @@ class Foot:
             rows.append(np.array([-level, *inward]) / (mean * self.area))
             acting.append(self.centre + self.second @ inward / mean)
         pressures, at = np.array(rows), np.array(acting)
-        up = wrench(np.column_stack([at, np.zeros(len(at))]) - centre, (0.0, 0.0, 1.0))
+        up = compute_wrenches(np.column_stack([at, np.zeros(len(at))]) - centre, (0.0, 0.0, 1.0))
         places, areas = self.cells()
         cells = np.column_stack([places, np.zeros(len(places))]) - centre
         turns = [2 * np.pi * k / WAYS for k in range(WAYS)]
-        rubbing = np.stack([wrench(cells, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
+        rubbing = np.stack([compute_wrenches(cells, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
         local = pressures @ np.column_stack([np.ones(len(places)), places]).T
         return PressingJaw(up, rubbing, friction * np.maximum(local, 0.0) * areas)
 

@@ -29,13 +29,19 @@ from workhold.model.requirements import Load
 from workhold.model.straps import Strap, StrappedHold
 from workhold.model.support_request import SupportRequest
 from workhold.verification.ball_geometry import PRECISIONS, BallOutline, cross
-from workhold.verification.contacts import BallContact, BallPose, every_outline, met_by
+from workhold.verification.contacts import BallContact, BallPose, make_joint_outline, select_outline_for
 from workhold.verification.foot import Foot
-from workhold.verification.jaw_forces import LENGTH, HeldBetweenJaws, PressingJaw, UnsettledError, wrench
-from workhold.verification.placing import faces_avoided, gap_findings, proven_pose, written_pose
+from workhold.verification.jaw_forces import (
+    LENGTH,
+    HeldBetweenJaws,
+    PressingJaw,
+    UnsettledError,
+    compute_wrenches,
+)
+from workhold.verification.placing import enclose_written_pose, find_avoided_faces, judge_gaps, prove_pose
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.tolerances import AGREEMENT, Finding
-from workhold.verification.touching import touching_findings
+from workhold.verification.touching import judge_touching
 
 __all__ = ["StrapJudge"]
 
@@ -67,7 +73,7 @@ class StrapJudge:
 
     @cached_property
     def hardware(self) -> ToolkitRules:
-        return ToolkitRules.of(self.query)
+        return ToolkitRules.from_query(self.query)
 
     @cached_property
     def wrench_length(self) -> float:
@@ -77,7 +83,7 @@ class StrapJudge:
     @cached_property
     def outline(self) -> BallOutline:
         with ctx.workprec(PRECISIONS[0]):
-            return every_outline(self.query.workpiece)
+            return make_joint_outline(self.query.workpiece)
 
     @cached_property
     def request(self) -> SupportRequest:
@@ -89,7 +95,7 @@ class StrapJudge:
             tip_radius=self.straps.tip_radius,
         )
 
-    def faults(self, fixture: Fixture, place: int) -> Iterator[str]:
+    def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
         """What is wrong with a fixture in a place of the list, one sentence each, without a full stop."""
         hold = fixture.hold
         if not isinstance(hold, StrappedHold):
@@ -108,7 +114,7 @@ class StrapJudge:
         if not known.issuperset(peg.face for peg in fixture.pegs):
             yield "a locator is on a segment that does not name a face"
             return
-        if faces_avoided(self.query) & {peg.face for peg in fixture.pegs}:
+        if find_avoided_faces(self.query) & {peg.face for peg in fixture.pegs}:
             yield "a locator touches a face that is to be avoided"
         touched = {peg.face for peg in fixture.pegs}
         if not touched.issuperset(self.query.restrictions.touch):
@@ -149,18 +155,18 @@ class StrapJudge:
     def seat_faults(self, fixture: Fixture) -> Iterator[str]:
         """Whether three locators touch their faces in the pose, inside them, and fix it."""
         outline, hardware = self.outline, self.hardware
-        contacts = hardware.contacts(fixture, outline)
+        contacts = hardware.make_contacts(fixture, outline)
         touching = [
-            (name, contact, peg.face, met_by(outline, peg.carrier))
+            (name, contact, peg.face, select_outline_for(outline, peg.carrier))
             for name, contact, peg in zip(hardware.names, contacts, fixture.pegs, strict=True)
         ]
-        yield from definite(gap_findings([one[:3] for one in touching], written_pose(fixture.pose, [])))
-        proven, doubts = proven_pose(contacts, fixture.pose, {})
+        yield from definite(judge_gaps([one[:3] for one in touching], enclose_written_pose(fixture.pose, [])))
+        proven, doubts = prove_pose(contacts, fixture.pose, {})
         yield from (doubt.reason for doubt in doubts)
         if proven is None:
             return
         for name, contact, face, met in touching:
-            found = touching_findings(name, contact, face, proven, met, self.query.contact_margin)
+            found = judge_touching(name, contact, face, proven, met, self.query.contact_margin)
             yield from definite(found)
         size = abs(determinant(contacts, proven)) / self.wrench_length
         if not size > LEAST_SEAT * (1 - 1e-6):
@@ -300,9 +306,9 @@ class StrapJudge:
         below = foot.pressing(find_friction_coefficient(self.query.friction, "plate"), centre)
         places = np.array([[*one.at, one.height] for one in hold.straps]) - centre
         turns = [2 * pi * k / WAYS for k in range(WAYS)]
-        rubbing = np.stack([wrench(places, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
+        rubbing = np.stack([compute_wrenches(places, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
         tips = PressingJaw(
-            wrench(places, (0.0, 0.0, -1.0)).sum(axis=0)[None],
+            compute_wrenches(places, (0.0, 0.0, -1.0)).sum(axis=0)[None],
             rubbing,
             np.full((1, len(places)), find_friction_coefficient(self.query.friction, "tip")),
         )
@@ -310,7 +316,7 @@ class StrapJudge:
         workpiece = self.query.workpiece
         bands = self.request.for_fixture(fixture, workpiece.solid, numbered=workpiece.numbered).peg_bands(3)
         free = [
-            wrench(np.array([[*point, z]]) - centre, (float(way[0]), float(way[1]), 0.0))[0]
+            compute_wrenches(np.array([[*point, z]]) - centre, (float(way[0]), float(way[1]), 0.0))[0]
             for point, way, band in zip(points, inward, bands, strict=True)
             for z in band
         ]
@@ -318,7 +324,7 @@ class StrapJudge:
 
     def weight(self, foot: Foot, centre: Array) -> Array:
         """The wrench (6,) of the part's weight, at the middle of its foot."""
-        down = wrench(np.array([[*foot.centre, 0.0]]) - centre, (0.0, 0.0, -1.0))[0]
+        down = compute_wrenches(np.array([[*foot.centre, 0.0]]) - centre, (0.0, 0.0, -1.0))[0]
         return np.asarray((self.query.weight or 0.0) * down)
 
     def needed(
@@ -335,7 +341,7 @@ class StrapJudge:
             at = np.array([[*pose.apply(x, y), height or 0.0]], float) - centre
             for way in ways:
                 force = load.force * cos(way + turn), load.force * sin(way + turn), load.upward
-                row = wrench(at, force)[0]
+                row = compute_wrenches(at, force)[0]
                 row[5] += load.moment / LENGTH
                 found = held.answer(row * factor + weight)
                 if found is None:
@@ -376,7 +382,9 @@ def definite(findings: Iterator[Finding]) -> Iterator[str]:
 
 def determinant(contacts: Sequence[BallContact], pose: BallPose) -> arb:
     """The determinant of the wrenches (n, q x n) of three contacts, in mm."""
-    rows = [(contact.outward(pose), contact.in_part(pose)) for contact in contacts]
+    rows = [
+        (contact.compute_outward_normal(pose), contact.compute_center_in_part(pose)) for contact in contacts
+    ]
     return arb_mat([[*normal, cross(point, normal)] for normal, point in rows]).det()
 
 

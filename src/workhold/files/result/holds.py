@@ -141,7 +141,9 @@ def read_holds(fixtures: Iterable[Any], path: Path) -> list[AnyHoldPart]:
     return out
 
 
-def make_jaw_holds(parts: Sequence[AnyHoldPart], query: Query, path: Path) -> tuple[JawHold | StrappedHold, ...]:
+def make_jaw_holds(
+    parts: Sequence[AnyHoldPart], query: Query, path: Path
+) -> tuple[JawHold | StrappedHold, ...]:
     """How friction holds the part in each fixture of a file; refuse faces that there are not, and other kinds."""
     strapped = [part for part in parts if isinstance(part, StrappedSeatPart)]
     jaws = [part for part in parts if isinstance(part, HoldPart)]

@@ -23,7 +23,7 @@ from workhold.errors import InputError
 from workhold.files.result.columns import read_columns
 from workhold.files.result.fixture_forms import add_seatings, check_seating
 from workhold.files.result.hold_text import is_hold
-from workhold.files.result.holds import AnyHoldPart, holds_of, read_holds, table_of_holds
+from workhold.files.result.holds import AnyHoldPart, make_jaw_holds, make_table_of_holds, read_holds
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,
@@ -104,8 +104,13 @@ def read_result(path: str | Path) -> Result:
         columns = []
     if isinstance(columns, list):
         holds = make_jaw_holds(columns, query, path)
-        return evolve(make_result_from_counts(make_table_of_holds(columns, query.toolkit), head, query, path), holds=holds)
-    result = make_result_from_counts(add_missing_figures(check_table(columns, query, path), query), head, query, path)
+        return evolve(
+            make_result_from_counts(make_table_of_holds(columns, query.toolkit), head, query, path),
+            holds=holds,
+        )
+    result = make_result_from_counts(
+        add_missing_figures(check_table(columns, query, path), query), head, query, path
+    )
     return add_seatings(result, columns.seating, path)
 
 
