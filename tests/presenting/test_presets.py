@@ -11,7 +11,14 @@ from workhold import Query
 from workhold.errors import InputError
 from workhold.files.toolkit_file import list_preset_names, load_toolkit
 
-CLASSES = (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw, workhold.PlainVise)
+CLASSES = (
+    workhold.Vise,
+    workhold.Plate,
+    workhold.Fence,
+    workhold.FlatJaw,
+    workhold.PlainVise,
+    workhold.StrapPlate,
+)
 
 
 def test_every_preset_is_one_of_its_class_alone() -> None:

@@ -94,7 +94,7 @@ class StrappedSeatPart(FormPart):
     push: PushPart | None
     quality: StrappedQualityPart
 
-    def fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
+    def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """The fixture with the figures that are written."""
         plate = toolkit.plates[0]
         pegs = tuple(
