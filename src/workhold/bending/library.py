@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
@@ -33,6 +34,10 @@ def load_elements() -> Elements:
     InputError
         When the extra is not installed, with the remedy.
     """
+    # Both this library and the reader of STEP files bring an Open CASCADE of their own. A process that loads this
+    # one first ends with a crash once the other is loaded, too; the other way round it does not.
+    with suppress(ImportError):
+        import OCP  # noqa: F401
     try:
         import netgen.meshing
         import netgen.occ
