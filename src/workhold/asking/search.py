@@ -134,7 +134,7 @@ class SearchQuestion:
     )
     opening: float | None = declare(
         "length",
-        "Of the first K fixtures list only those into which the part settles with the jaws open, "
+        "Among the first K fixtures, list only those into which the part settles with the jaws open, "
         "or the clamp drawn back, by this much more than where they hold it; wrong places beyond "
         "this opening do not count.",
         PageLabel("Settles from", "any", is_usual=True),
@@ -143,8 +143,8 @@ class SearchQuestion:
     )
     foolproof: bool = declare(
         "flag",
-        "Of the first K fixtures list only those that have no wrong place to rest in, or whose "
-        "wrong places all show by a caliper.",
+        "Among the first K fixtures, list only those without a wrong place to rest in, and "
+        "those whose wrong places a caliper shows.",
         PageLabel("Only if a caliper shows every wrong place", is_usual=True),
         default=False,
         section=SEATING,

@@ -108,10 +108,10 @@ class SheetQuestion:
     )
     dowel: str | None = declare(
         "text",
-        "Dowels and their fit, such as '6 mm m6 in H7'; those of the toolkit if not given.",
+        "Dowels and their fit, such as '6 mm m6 in H7'; if not given, the dowels of the toolkit.",
         PageLabel("Dowel and fit", "6 mm m6 in H7"),
         section=BODIES,
-        typed="Dowels and their fit, such as '6 mm m6 in H7'; those of --vise if not given.",
+        typed="Dowels and their fit, such as '6 mm m6 in H7'; if not given, the dowels of --vise.",
     )
     material: str | None = declare(
         "text",
@@ -164,8 +164,7 @@ class SheetQuestion:
     jaw: Any = declare(
         "text",
         "What the closed jaw does under load: screw: it is locked, as a vise is; constant: it "
-        "keeps its force (hydraulic, pneumatic); a number: it is locked, and so many times as "
-        "stiff as one contact.",
+        "keeps its force (hydraulic, pneumatic); a number: it is locked, and this many times as stiff as one contact.",
         default="screw",
         section=LOADS,
         metavar="KIND",

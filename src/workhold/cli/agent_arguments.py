@@ -177,7 +177,7 @@ class ShowArguments(ToolArguments):
 
     result_file: ResultPath
     rank: Rank = 1
-    loads: list[LoadTable] = Field(default=[], description="loads to use instead of those of the result")
+    loads: list[LoadTable] = Field(default=[], description="loads to use instead of the loads of the result")
     jaw_force: ClosingForce = None
     seating: bool = Field(
         default=False, description="find whether the part settles in its place, and where else it can rest"

@@ -74,7 +74,7 @@ class BendWords:
 class BentWords:
     """The options of what is said of bending, as typed; None for those not given."""
 
-    best: str | None = make_option(OUTPUT, "K", "So many of the best fixtures; 20 if not given.")
+    best: str | None = make_option(OUTPUT, "K", "How many of the best fixtures to look at; 20 if not given.")
     rank_by: str | None = make_option(
         OUTPUT, "FIGURE", "Order these by clamp-distortion or give, the least first; as listed if not given."
     )
@@ -264,7 +264,7 @@ def tabulate(
             ]
         table.add_row(*cells)
     first = ranked[0][1]
-    stated = "Nobody said how hard the jaws press: all is for each 1000 N.\n" if first.is_stated else ""
+    stated = "You gave no jaw force, so every figure is for 1000 N.\n" if first.is_stated else ""
     return [
         f"How far {result.workpiece.name} of {asked.material.words} is bent",
         "",

@@ -258,7 +258,7 @@ def print_explored(
         shown = [f for f in (*figures[1:], figures[0]) if f.key in own]
         shown = shown or [f for f in HOLD_FIGURES if f.key in own]
         words = ", ".join(f"{f.words} {format_figure(f, own[f.key], unit)}" for f in shown)
-        unsold = "" if is_sold(best.name) else " Nobody sells it: it is the gripper of the paper."
+        unsold = "" if is_sold(best.name) else " It is the paper's gripper, and no shop sells it."
         over = f"It holds the part over {best.held:.0%} of its length."
         print_tables(f"First choice: {best.name}; its first fixture has {words}. {over}{unsold}")
         return

@@ -58,7 +58,7 @@ RUN_TOOLS = make_option(
     READING, "FILE", "Table of tools: TOML, CSV, or LinuxCNC's; the program's comments if not given."
 )
 RUN_THICKNESS = make_option(
-    PLACE, "LENGTH", "Thickness of the part; without it heights are those of the program."
+    PLACE, "LENGTH", "Thickness of the part. Without it, heights count from the program's zero."
 )
 
 

@@ -277,8 +277,7 @@ def describe_wrong_seats(
         )
     if alike:
         words.append(
-            f"In {alike} more places it covers the right place all the same, and no reading shows it: "
-            "mark the part."
+            f"In {alike} more places it covers the right place anyway, and no reading shows it: mark the part."
         )
     return words
 

@@ -55,7 +55,7 @@ class StrapWords:
     load: list[str] | None = make_option(
         LOADS,
         "LOAD",
-        "A load in space, as of supports; those of the result, at the part's upper side, if not given.",
+        "A load in space, written as for supports. If not given, the loads of the result act at the part's upper side.",
     )
     friction: str | None = make_option(
         LOADS,

@@ -133,7 +133,7 @@ def list_clamp_forces_with_friction(
     if friction is None:
         return []
     if not found.loads:
-        raise InputError("--friction needs loads, and there are none: give --load too.")
+        raise InputError("--friction needs loads: give --load too.")
     return [found.clamp_with_friction(friction, rank) for rank in range(1, len(found.triples[:count]) + 1)]
 
 

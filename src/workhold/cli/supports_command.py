@@ -66,7 +66,7 @@ THICKNESS = make_option(PART, "LENGTH", "Thickness of the part; that of its soli
 BAND = make_option(
     PART,
     "LOW:HIGH",
-    "Heights at which pegs may press on the part's faces; those of its solid, or all, if not given.",
+    "Heights at which pegs may press on the part's faces. If not given, the heights of its solid, or all heights.",
 )
 BELOW = make_option(
     SUPPORTS_SECTION, "ZONE", "A place that no pad may stand under, circle=X,Y,RADIUS or polygon=X,Y;X,Y;X,Y."

@@ -176,7 +176,7 @@ def write_force(column: TextColumn, sheet: Sheet) -> None:
     if torque is not None:
         column.write_fact("on the screw, about", unit.format_moment(torque * 1000.0), bold=True)
         column.write_paragraph(
-            "Of the torque three tenths move the jaw, the rest is friction in the thread.", NOTE
+            "Three tenths of the torque move the jaw; friction in the thread takes the rest.", NOTE
         )
     if hold.slip_reserve is not None:
         column.write_fact("the vise is rated for", unit.format_force(hold.max_force or 0.0))

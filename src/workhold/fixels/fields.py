@@ -285,7 +285,7 @@ JAW_HEIGHTS = make_heights_field("jaw", "the jaw's pegs", "single jaw with pegs"
 JAW_HEIGHT = ToolkitField(
     "jaw_height",
     "length",
-    "Of flat jaws: how high they stand above the vise's bed; any height if not given.",
+    "Flat jaws: how high they stand above the vise's bed; any height if not given.",
     (PageLabel("Height of the jaws", "any", is_usual=True),),
     figure="height of the jaws above the bed",
     unset="any",
@@ -294,7 +294,7 @@ JAW_HEIGHT = ToolkitField(
 JAW_THICKNESS = ToolkitField(
     "jaw_thickness",
     "length",
-    "Of flat jaws: how thick they are at their top, for the tools of a program; endless if not given.",
+    "Flat jaws: how thick they are at their top, for the tools of a program; endless if not given.",
     (PageLabel("Thickness of the jaws", "endless"),),
     figure="thickness of the jaws",
     unset="endless",
@@ -367,7 +367,7 @@ MAX_FORCE = ToolkitField(
 SCREW_LEAD = ToolkitField(
     "screw_lead",
     "length",
-    "Of the vise's screw: how far one turn moves the jaw, for the torque that closes it.",
+    "The vise's screw: how far one turn moves the jaw, for the torque that closes it.",
     (PageLabel("Lead of the screw", "not known"),),
     figure="lead of the screw",
     unset="not known",

@@ -114,7 +114,7 @@ CLAMP = FieldTable(
             "above 0",
             "radius of the head of the clamp on top",
             "Head radius",
-            "Radius of the clamp's head. Within this radius nothing of the part rises above the "
+            "Radius of the clamp's head. Within this radius the part must not rise above the "
             "face. If not given, the toolkit's, or one and a half times the tip's radius.",
             CLAMP_SECTION,
         ),

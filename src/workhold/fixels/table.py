@@ -32,7 +32,7 @@ __all__ = [
 SILENT: frozenset[Form] = frozenset({"flat", "heights"})
 # Sections of the command's help.
 TOOLKIT_SECTION, CLAMPS_SECTION = "The toolkit", "The clamps of a plate or fence"
-HEIGHTS_SECTION = "Heights other than those of all pegs"
+HEIGHTS_SECTION = "Heights other than the heights of all pegs"
 
 
 @frozen

@@ -310,7 +310,7 @@ def make_attachment_header(name: str, ending: str) -> str:
 
 
 Setups = Annotated[
-    int | None, Query(ge=1, le=1000, description="at most so many; the fewest there can be if not given")
+    int | None, Query(ge=1, le=1000, description="the most set-ups; if not given, the fewest that can be")
 ]
 
 

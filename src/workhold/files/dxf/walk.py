@@ -253,7 +253,7 @@ class DxfWalk:
             remarks.append(
                 f"Left out {format_count(total, 'hidden entity', 'hidden entities')} "
                 f"({list_first_words(places)}); name a layer "
-                f"with {LAYERS} to read it all the same."
+                f"with {LAYERS} to read it anyway."
             )
         if self.missing_blocks:
             names = list_first_items([shorten_name(name) for name in sorted(self.missing_blocks)])

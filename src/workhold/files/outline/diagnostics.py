@@ -108,14 +108,14 @@ def refuse_open_outline(part: DrawnPart, strays: Sequence[Stray]) -> None:
         gap, size = dist(stray.chain.points[0], stray.chain.points[-1]), dist(box[:2], box[2:])
         if surrounds_box(box, part.bounds) and gap < NEARLY_CLOSED * size:
             raise InputError(
-                f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part all "
-                f"the same, give {PART_NUMBER} {part.number}."
+                f"the outline around {part} is not closed: {open_ends([stray])} To use the inner part "
+                f"anyway, give {PART_NUMBER} {part.number}."
             )
     enough = find_gap_around_part(part, strays)
     if enough is not None:
         raise InputError(
             f"the outline around {part} is not closed: {open_ends(strays, enough)} To use the inner part "
-            f"all the same, give {PART_NUMBER} {part.number}."
+            f"anyway, give {PART_NUMBER} {part.number}."
         )
 
 

@@ -268,7 +268,7 @@ class StandingSolid:
         pieces = find_border_pieces(carriers, inside)
         if not pieces:
             raise InputError(
-                f"nothing of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
+                f"no part of the solid lies between the heights {max(low, 0):g} and {high:g} mm."
             )
         try:
             return self.close_loops(pieces, curves)
