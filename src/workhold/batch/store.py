@@ -229,7 +229,7 @@ class UrlStore(Store):
         return content if is_whole(name, content, line) else None
 
     def write(self, name: str, record: bytes) -> None:
-        """Keep a record; see :meth:`workhold.batch.store.Store.write`. One that is cut short is none."""
+        """Keep a record; see :meth:`workhold.batch.store.Store.write`. A record that was cut short does not count."""
         system, path = self.locate_record(name)
         try:
             system.makedirs(path.rpartition("/")[0], exist_ok=True)

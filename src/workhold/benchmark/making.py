@@ -84,7 +84,7 @@ def make_and_write_sets(
     progress: Callable[[float, int], None] | None = None,
     cancel: Event | None = None,
 ) -> Iterator[MadeSet]:
-    """Make sets one after the other and write each into a folder.
+    """Make sets one after the other, and write each into a folder.
 
     Parameters
     ----------

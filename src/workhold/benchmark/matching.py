@@ -185,7 +185,7 @@ def read_csv_rows(text: str) -> tuple[Entered, ...]:
 
 
 def convert_row_to_object(row: CsvRow, pegs: Sequence[str]) -> dict[str, Any]:
-    """Return a row of CSV as an object of JSON; pegs without any cell are none, for not all toolkits have as many."""
+    """Return a row of CSV as an object of JSON; a peg without any cell is left out, as toolkits differ in pegs."""
     given = [peg for peg in pegs if not row.cells.keys().isdisjoint((peg, f"{peg}_x", f"{peg}_y"))]
     return {
         "pegs": [

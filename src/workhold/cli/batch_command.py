@@ -267,7 +267,7 @@ def parse(
 
 
 def ask(asked: BatchTask) -> BatchAnswer:
-    """Search in the place that was asked for, for as long as nobody says to stop."""
+    """Search in the place that was asked for, until the user stops it."""
     from workhold.batch.durations import Measured
     from workhold.batch.run import BatchRun, run_batch
     from workhold.batch.store import FolderStore, store_at

@@ -163,7 +163,7 @@ def read_flag(value: Any, place: str) -> bool:
 
 
 def format_as_typed(value: Any, place: str) -> str:
-    """Return a value as it would be typed; refuse what nobody can type."""
+    """Return a value as it would be typed; refuse a value that cannot be typed."""
     if isinstance(value, bool) or not isinstance(value, str | int | float):
         raise InputError(f"{place} is neither text nor a number: write it as on the command line, in quotes.")
     return value if isinstance(value, str) else f"{value!r}" if isinstance(value, float) else str(value)

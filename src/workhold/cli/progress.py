@@ -110,7 +110,7 @@ class BatchProgress:
     done: int = field(default=0, init=False)
 
     def begin_stage(self, doing: str, count: int, seconds: float) -> None:
-        """Begin a stage of so many tasks, which take about so many seconds in all."""
+        """Begin a stage of ``count`` tasks, which take about ``seconds`` seconds in all."""
         self.count, self.done = count, 0
         if self.bars is None or count == 0:
             return
@@ -150,7 +150,7 @@ class BatchProgress:
 
 @contextmanager
 def show_batch_progress() -> Iterator[BatchProgress]:
-    """Yield the progress of a batch on stderr; quiet in a pipe, but for what happens to workers."""
+    """Yield the progress of a batch on stderr; in a pipe, print only what happens to workers."""
     if not sys.stderr.isatty():
         yield BatchProgress(None)
         return

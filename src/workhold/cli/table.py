@@ -136,7 +136,7 @@ def measure_longest_word(texts: Iterable[str]) -> int:
 
 
 def narrow_columns(widths: list[int], least: list[int], over: int) -> list[int]:
-    """Narrow columns by so many characters in all, always the widest that can be narrowed.
+    """Narrow columns by ``over`` characters in all, each time the widest that can be narrowed.
 
     >>> narrow_columns([30, 10, 40], [24, 10, 24], 14)
     [28, 10, 28]

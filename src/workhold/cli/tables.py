@@ -89,7 +89,7 @@ def explain_first_fixture(result: Result, unit: Unit) -> str:
 
 
 def count_unfit_in_words(unfit: int, toolkit: Toolkit | None = None) -> str:
-    """Say how many fixtures are not shown because they are none for a workshop, and how to see them."""
+    """Say how many fixtures are hidden because they are unfit for a workshop, and how to see them."""
     are = "is no fixture" if unfit == 1 else "are no fixtures"
     why = "the part may lie anywhere, or one peg hardly holds"
     if toolkit is not None and toolkit.flat_jaws is not None:
@@ -365,7 +365,7 @@ def tabulate_face_heights(workpiece: Workpiece, unit: Unit) -> list[Table]:
 
 
 def tabulate_peg_heights(rows: Sequence[HeightRow], unit: Unit) -> list[Table]:
-    """Tabulate what the part offers to pegs of other heights; nothing where nobody looked."""
+    """Tabulate what the part offers to pegs of other heights; no tables if other heights were not tried."""
     if not rows:
         return []
     names = ("pegs above", "up to", "outline", "touchable", "least band")

@@ -263,7 +263,7 @@ def identify_fixture(fixture: Mapping[str, Any]) -> str:
 
 
 def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
-    """Return a fixture's bodies but for the part's, and the pose of the part among them; its picture if wanted."""
+    """Return the bodies of a fixture except the part's, the pose of the part, and its picture if wanted."""
     from workhold.presenting.assembly import Assembly
 
     fixture = result[rank - 1]

@@ -256,7 +256,7 @@ def write_plates(path: Path, plates: tuple[JawPlate, ...], thickness: float | No
 
 
 def read_bolts(places: str | None, diameter: str | None, unit: Unit) -> Bolts | None:
-    """Read the bolts asked for; None where there are none, and refuse one of the two options alone."""
+    """Read the bolts asked for; None without bolts. Refuse one of the two options alone."""
     if places is None and diameter is None:
         return None
     size = read_optional_positive_length("--bolt-diameter", diameter, unit)

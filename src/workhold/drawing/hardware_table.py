@@ -81,7 +81,7 @@ def write_hardware(column: TextColumn, sheet: Sheet) -> None:
 
 
 def describe_length(item: HardwareItem, sheet: Sheet) -> str:
-    """Return how long a thing is, or the dowel that would do for pegs of whose length nothing was said."""
+    """Return how long a thing is; for pegs of unknown length, the dowel that would do."""
     if item.length is not None:
         return sheet.lengths.number(item.length)
     heights = sheet.heights

@@ -202,7 +202,7 @@ def write_tools(column: TextColumn, program: Program, lengths: LengthUnit, fill:
 
 
 def list_tools_above_pegs(path: PlannedPath) -> list[str]:
-    """Return the tools that never come down to the pegs; none where nobody knows how high these are."""
+    """Return the tools that never come down to the pegs; empty if the height of the pegs is not known."""
     if path.peg_height is None:
         return []
     return [f"T{one.tool}" for one in measure_tools(path.program) if one.lowest > path.peg_height]

@@ -402,7 +402,8 @@ class LengthUnit:
         return f"{self.number(length)} {self.sign}"
 
     def format_short(self, length: float, digits: int = 6) -> str:
-        """Return a length in mm, such as a pitch, with as few decimals as it has and at most so many digits.
+        """Return a length in mm, such as a pitch, with as few decimals as it needs and at most ``digits``
+        digits.
 
         >>> LengthUnit.in_mm().format_short(12.7), LengthUnit.in_mm().format_short(10.0)
         ('12.7 mm', '10 mm')

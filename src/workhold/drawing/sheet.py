@@ -142,7 +142,7 @@ def draw_setup_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]
 
 
 def make_side_figure(sheet: Sheet, bench: Bench) -> SideFigure | None:
-    """Return the view from the side; None where nobody knows how thick the part is."""
+    """Return the view from the side; None if the thickness of the part is not known."""
     if sheet.heights is None:
         return None
     view = choose_side_view(bench, sheet.workpiece, sheet.heights, sheet.details.supports)

@@ -377,7 +377,7 @@ WIDEST_LOAD = 0.3
 
 
 def write_quality(column: TextColumn, sheet: Sheet) -> None:
-    """Write the figures of quality that are known, but for those that other blocks show."""
+    """Write the figures of quality that are known and that no other block shows."""
     write_heading(column, "Quality")
     for figure in (FIGURES[number] for number in ON_THE_SHEET):
         value = sheet.fixture.quality.get(figure.key)

@@ -113,7 +113,7 @@ class SheetHeights:
 def find_sheet_heights(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, details: SheetDetails
 ) -> SheetHeights | None:
-    """Return the heights of a set-up; None where nobody knows how thick the part is.
+    """Return the heights of a set-up; None if the thickness of the part is not known.
 
     Refuses pegs that end below the part.
     """

@@ -161,7 +161,8 @@ def find_too_near_shifts(
 
 
 def list_places_on_plate(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
-    """Return the shifts at which a fixture stands on a plate of so many columns and rows, row by row.
+    """Return the shifts at which a fixture stands on a plate of ``columns`` columns and ``rows`` rows, row by
+    row.
 
     Refuses a plate on which one alone does not stand.
     """

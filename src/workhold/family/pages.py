@@ -292,7 +292,7 @@ def draw_parts(scene: Scene, benches: Sequence[tuple[Holding, Bench]], room: Box
 
 
 def make_grid(count: int, room: Box) -> list[Box]:
-    """Return the equal cells for so many parts in a room, row by row, as nearly square as there can be."""
+    """Return ``count`` equal cells in a room, row by row, as nearly square as there can be."""
     ways = [(across, -(-count // across)) for across in range(1, count + 1)]
 
     def size(way: tuple[int, int]) -> float:

@@ -203,7 +203,7 @@ def limit_memory(size: int) -> None:
 
 
 def limit_processor(seconds: float) -> None:
-    """Let the system end the process when it has taken so many processor seconds from now on."""
+    """Let the system end the process once it has taken this many more seconds of processor time."""
     try:
         import resource
     except ImportError:

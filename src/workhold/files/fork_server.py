@@ -53,7 +53,7 @@ class ForkedProcess:
     returncode: int | None = None
 
     def wait(self) -> int:
-        """Wait until it has ended and return its exit code; that of SIGKILL where nobody can say."""
+        """Wait until it has ended, and return its exit code; the code of SIGKILL if the real one is not known."""
         if self.returncode is None:
             self.returncode = int(self.status.readline() or -signal.SIGKILL)
         return self.returncode

@@ -221,7 +221,7 @@ class WorkpieceFile(BaseModel):
 
 
 def check_workpiece_entries(content: dict[str, Any]) -> dict[str, Any]:
-    """Name (None when there is none), units and loops of a workpiece, each of the type it should have."""
+    """Return name (None if it has no name), units and loops of a workpiece, each of the type it should have."""
     try:
         return WorkpieceFile.model_validate(content).model_dump()
     except ValidationError as error:

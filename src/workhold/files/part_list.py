@@ -112,7 +112,7 @@ def list_parts(given: Iterable[str | Path], leave_out: Iterable[str | Path] = ()
 
 
 def is_folder(path: Path) -> bool:
-    """Return whether a path is a folder; names that no file can have are none."""
+    """Return whether a path is a folder; False for a name that no file can have."""
     try:
         return path.is_dir()
     except OSError:

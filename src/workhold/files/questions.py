@@ -93,7 +93,7 @@ def number_or_name(part: int | str | None) -> int | str | None:
 
 
 def check_layer_names(layers: Sequence[str] | str | None) -> Sequence[str] | None:
-    """Return the names of layers, of which one may stand by itself; refuse what are none."""
+    """Return the names of layers, given as one name or several; refuse anything else."""
     names = [layers] if isinstance(layers, str) else layers
     if names is not None and not (isinstance(names, Iterable) and all(isinstance(one, str) for one in names)):
         raise InputError(f"layers cannot be {quote_value(layers)}: give their names in a list.")

@@ -36,7 +36,7 @@ class ZonePart(FormPart):
     loop: Loop | None = None
 
     def to_zone(self) -> Zone:
-        """Return the zone; refuse what is none."""
+        """Return the zone; refuse what is not a zone."""
         if self.circle is not None:
             return circle_zone(*self.circle)
         if self.polygon is not None:
@@ -91,7 +91,7 @@ class SpatialLoadPart(FormPart):
     tilt: Two = Field(default_factory=lambda: [0.0, 0.0])
 
     def load(self, thickness: float) -> SpatialLoad:
-        """Return the load with its heights written out; refuse what is none."""
+        """Return the load with its heights written out; refuse what is not a load."""
         return SpatialLoad(**dict(self)).at_height(thickness)
 
 
@@ -172,7 +172,7 @@ class TripleReader:
         return self.read_triple(entry) if entry.keys() >= {"holes", "standing"} else entry
 
     def read_triple(self, entry: Any) -> ReadTriple:
-        """Return a triple; raise ValidationError for what is none."""
+        """Return a triple; raise ValidationError for what is not a triple."""
         part = TriplePart.model_validate(entry)
         self.count += 1
         return ReadTriple(
@@ -269,7 +269,7 @@ class SupportsPart(FormPart):
 
 
 def read_face_loops(loops: list[Loop] | None) -> list[Loop] | None:
-    """Return the loops of a face: none around nothing, and None where nobody says."""
+    """Return the loops of a face: an empty list for a face that is not there, None if the file does not say."""
     return None if loops is None else [loop for loop in loops if loop]
 
 

@@ -73,7 +73,9 @@ def resolve_kind(name: str) -> tuple[str, Mapping[str, Any]]:
 
 
 def find_table(kind: object) -> FieldTable:
-    """Return the table of a kind; of what is none, or an alias that is not resolved, that of the usual kind."""
+    """Return the table of a kind; for an unknown kind, or an alias that is not resolved, the table of the
+    usual kind.
+    """
     return TABLES.get(str(kind), TABLES[USUAL])
 
 

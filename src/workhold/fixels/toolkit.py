@@ -100,7 +100,7 @@ class Limit:
 
 
 def is_whole(number: float) -> bool:
-    """Return whether a number is a whole one but for rounding."""
+    """Return whether a number is whole within rounding."""
     return abs(number - round(number)) < 1e-9
 
 
@@ -384,7 +384,9 @@ class Toolkit:
         return [known.index(name) for name in names]
 
     def find_arrangement_numbers(self, standing: NDArray[Any]) -> NDArray[np.int64]:
-        """Return the indices (N,) of the arrangements with so many pegs (N,) on the carrier that stands still."""
+        """Return the indices (N,) of the arrangements that have ``standing`` pegs (N,) on the carrier that
+        stands still.
+        """
         pegs = [one.pegs[0] for one in self.arrangements]
         return np.asarray(
             np.array([pegs.index(k) if k in pegs else -1 for k in range(max(pegs) + 1)])[standing]

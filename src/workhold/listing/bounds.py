@@ -81,7 +81,7 @@ MANY = 1 << 20
 
 
 def find_first_clamp_figure(query: Query) -> int | None:
-    """Return the place in a ranking of the first figure that pairs of clamps bound; None where there is none."""
+    """Return the place in a ranking of the first figure that pairs of clamps bound; None if no figure is."""
     keys = {FIGURES[number].key for number in BOUNDED}
     return next((place for place, key in enumerate(query.rank_by) if key in keys), None)
 

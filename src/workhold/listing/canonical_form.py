@@ -147,7 +147,7 @@ def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.
 
 
 def find_joints(problem: Problem, within: float) -> tuple[IntArray, IntArray]:
-    """Return which ends of features, two for each, meet which of others that the same pegs touch, within so many mm."""
+    """Return pairs of feature ends (two numbers each) that meet within ``within`` mm and that the same pegs touch."""
     one, other = find_meeting_ends(find_row_ends(problem.rows).reshape(-1, 2), within)
     begin, last = problem.moving
     alike = ((one // 2 >= begin) & (one // 2 < last)) == ((other // 2 >= begin) & (other // 2 < last))

@@ -231,8 +231,8 @@ class BestFixtures:
         return order_keys(table, self.problem.query, self.effective)
 
     def rules_out(self, bound: OrderKeys) -> bool:
-        """Return whether nothing that has no less than one bound is among the best: so many were decided
-        already that some of them are dropped.
+        """Return whether a fixture with keys no less than a bound cannot be among the best; True only once
+        some were dropped.
         """
         self.decide()
         return self.keys is not None and bool(bound.are_beaten(self.keys, self.most, bound.lowest).all())
@@ -349,7 +349,7 @@ class ResultCollector:
         return Account.together(self.accounts)
 
     def measure(self, progress: Progress | None = None) -> bool:
-        """List once, measures and count; whether nothing was left because somebody asked to stop."""
+        """List once, measure and count; return whether nothing was left because the user asked to stop."""
         parts, done = self.by_holes.list_parts(), 0
         course = Course(len(parts), cancel=self.cancel)
         for table, turned, least in map_in_order(
@@ -434,9 +434,7 @@ class ResultCollector:
         return min(found, LISTED_LATE) if self.course.is_stopped else found
 
     def iterate_tables(self, progress: Progress | None = None) -> Iterator[FixtureTable]:
-        """Yield the fixtures, best first, in tables one after the other; when somebody asks to stop, the
-        first of them.
-        """
+        """Yield the fixtures, best first, in tables; when the user asks to stop, the first fixtures alone."""
         parts, listed = self.by_rank.list_parts(), 0
         for number, part in enumerate(map_in_order(self.pool, self.ahead, take_run, parts), 1):
             rows = min(len(part), max(self.listed - listed, 0))

@@ -60,7 +60,7 @@ class PackedContacts:
         return np.hstack([self.whole[chosen], self.reals[chosen]])
 
     def iterate_parts(self) -> Iterator[Array]:
-        """Yield all records, some at a time; one part of nothing where there are none."""
+        """Yield all records in parts; one empty part if there are no records."""
         for first in range(0, max(len(self), 1), TOGETHER):
             yield self.take(slice(first, first + TOGETHER))
 

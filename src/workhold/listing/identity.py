@@ -284,8 +284,8 @@ class Entries:
 
 
 def make_entries(result: Result, with_unfit: bool = False) -> Entries:
-    """Return the entries of the best of a result; fixtures that are none for a workshop make entries only if
-    asked for, or if there are no others.
+    """Return the entries of a result's best; fixtures unfit for a workshop are entries only if asked for, or
+    if all are unfit.
     """
     table = result.table
     if result.toolkit.holds_by_friction:

@@ -121,8 +121,8 @@ def are_bodies_clear(c: Candidates, frame: Frame) -> BoolArray:
 
 
 def are_at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: Frame) -> BoolArray:
-    """Return which orientations (N,) in radians lie, seen from the toolkit, in one of some ranges in degrees;
-    in any when there are none.
+    """Return which orientations (N,) in radians lie, seen from the toolkit, in a range in degrees; all
+    without ranges.
     """
     return np.asarray(lie_in_angle_ranges(np.degrees(theta) + 90.0 * frame.quarters, angles))
 
@@ -201,7 +201,7 @@ def clear_of_blocked(found: Arranged, frame: Frame, room: IntArray, spare: IntAr
 
 
 def list_outward_moves(standing: int, moving: int) -> Iterator[tuple[int, int]]:
-    """Yield the columns to move outward on carriers of so many, the fewest in all first, then the most on the
+    """Yield the columns to move outward on both carriers: the fewest in all first, then the most on the
     standing one.
     """
     for total in range(standing + moving - 1):

@@ -213,7 +213,7 @@ class OrderKeys:
         return int(self.error[(self.first == best).all(axis=1)].min())
 
     def find_last_fine_error(self, count: int) -> float | None:
-        """Return the so-manieth least effective error in mm of those fit and without a warning; None where
+        """Return the ``count``-th least effective error in mm of the fit fixtures without a warning; None if
         there are fewer.
         """
         if self.error is None or (errors := self.error[self.is_fine]).size < count:
@@ -232,7 +232,7 @@ class OrderKeys:
         return np.lexsort(self.make_order_numbers(least).T[::-1])
 
     def are_among_best(self, most: int) -> BoolArray:
-        """Return which (N,) may be among the best so many, or tie with the last of them, whatever the least
+        """Return which (N,) may be among the best ``most``, or tie with the last of them, whatever the least
         error is.
         """
         if len(self) <= most:
@@ -276,7 +276,7 @@ class OrderKeys:
         return out
 
     def are_beaten(self, kept: OrderKeys, most: int, floor: int) -> BoolArray:
-        """Return which (N,) of these bounds so many of some fixtures surely come before.
+        """Return which (N,) of these bounds surely come after ``most`` of some fixtures.
 
         Parameters
         ----------
@@ -420,7 +420,7 @@ def round_coarsely(values: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def make_best_possible_figures(count: int, query: Query) -> NDArray[np.float64]:
-    """Return the figures of quality of so many fixtures (N, F), none of any fixture of a query being better.
+    """Return figures of quality (N, F) that no fixture of a query exceeds.
 
     The closure margin is a share of one, so of all pegs at most an equal one, and clamp freedom 90 degrees.
     """

@@ -266,8 +266,9 @@ class Runs:
 def map_in_order(
     pool: Executor, ahead: int, work: Callable[[One], Other], items: Iterable[One]
 ) -> Iterator[Other]:
-    """Yield what work gives for each item, in the order of the items; so many at a time are begun and not yet
-    taken."""
+    """Yield what work gives for each item, in the order of the items; at most ``ahead`` items are begun and
+    not yet taken.
+    """
     running: deque[Future[Other]] = deque()
     try:
         for item in items:

@@ -307,7 +307,7 @@ def bound_error_factors(records: Array, off: Array, problem: Problem, query: Que
 def bound_figures(
     records: Array, off: Array, problem: Problem, query: Query, pairs: Array | None = None
 ) -> Array:
-    """Return the figures of quality (N, F), none of a fixture with these locators being better.
+    """Return figures of quality (N, F) that no fixture with these locators exceeds.
 
     NaN stands where nothing is known.
     """

@@ -120,7 +120,7 @@ def find_figure_unit(figure: Figure, unit: Unit) -> str:
 
 
 def format_rounded(value: float, decimals: int) -> str:
-    """Format a number with so many decimals, and zero without a sign.
+    """Format a number with ``decimals`` decimals, and zero without a sign.
 
     >>> format_rounded(-1e-15, 3), format_rounded(-0.5, 1)
     ('0.000', '-0.5')

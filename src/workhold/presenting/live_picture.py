@@ -333,7 +333,7 @@ class LivePicture:
         return {"center": list(self.center), "keyframes": list(keyframes) or plain, "words": words}
 
     def make_keyframe(self, pose: Pose, opened: float) -> list[float]:
-        """Return the keyframe in which the part lies in a pose and what moves is open by so many mm."""
+        """Return the keyframe in which the part lies in a pose and the moving carrier is open by ``opened`` mm."""
         x, y = self.view(pose.apply(*self.result.workpiece.center))
         turned = (pose.theta_deg - self.fixture.pose.theta_deg + 180.0) % 360.0 - 180.0
         numbers = turned, x - self.center[0], y - self.center[1], opened

@@ -307,7 +307,7 @@ def may_be_said(note: Note, listing: Listing) -> bool:
 
 
 def is_as_seated(note: Seated, listing: Listing) -> bool:
-    """Return whether so many fixtures may have had their seating worked out, and so many be as asked."""
+    """Return whether the numbers of fixtures with seating worked out, and of those as asked, can be right."""
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
     least = most if listing.complete else listed

@@ -91,7 +91,7 @@ class EffectiveJudge:
         return frozenset() if opens or not left else part.inside
 
     def is_inside(self, peg: Peg) -> bool:
-        """Return whether a peg stands in a hole that nobody asked for."""
+        """Return whether a peg stands in a hole of the part that the query does not ask for."""
         return peg.face in self.holes and self.find_carrier(peg).contact.is_placed
 
     def touches_an_end(self, fixture: Fixture) -> tuple[bool, bool]:

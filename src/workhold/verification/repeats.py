@@ -99,7 +99,8 @@ def list_face_marks(face: Segment) -> list[complex]:
 
 
 def order_of(marks: NDArray[np.complex128], off: float) -> int:
-    """Return the most rotations that carry each of the marks (N, 5) about 0 to within so many mm of others.
+    """Return the largest number of rotations that carry each mark (N, 5) about 0 to within a distance in mm
+    of another one.
 
     The last of a face's marks is the number of its outline, which stays.
     """

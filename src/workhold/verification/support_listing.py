@@ -301,7 +301,8 @@ def are_large_enough(points: Array, inside: float) -> NDArray[np.bool_]:
 def find_missing_triples(
     rules: SupportPlaces, listed: Iterable[Iterable[Hole]], positions: int
 ) -> tuple[list[str], int]:
-    """Return what speaks against a list that says it is complete, and for how many triples nobody can say.
+    """Return what contradicts a list that claims to be complete, and the number of triples that stay
+    undecided.
 
     Triples have their holes in any order. ``positions`` is how many holes could hold a support, as the list
     says.

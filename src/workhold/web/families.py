@@ -105,7 +105,7 @@ class FamilyFound:
         }
 
     def choose_plan(self, setups: int | None) -> Plan:
-        """Return the plan with at most so many set-ups; None is the fewest."""
+        """Return the plan with at most ``setups`` set-ups; None asks for the fewest."""
         fitting = [plan for plan in self.plans if setups is None or plan.point.setups <= setups]
         if not fitting:
             raise InputError("there is no plan with so few set-ups: ask for more.")

@@ -79,7 +79,7 @@ class ServerLimits:
 
 
 def compute_usual_memory(searches: int) -> int:
-    """Return the bytes of address space for each of so many searches at the same time.
+    """Return the bytes of address space for each of ``searches`` searches that run at the same time.
 
     It is 4 GiB, or less where the machine has less.
     """

@@ -179,7 +179,7 @@ def read_seen_version(text: str | None) -> int | None:
 
 
 async def stream(server: ServerState, job: ServerJob, sent: int | None) -> AsyncIterator[str]:
-    """Yield the events of a job, but for the one that was sent before."""
+    """Yield the events of a job, except the one that was sent before."""
     watcher = asyncio.Event()
     job.watchers.add(watcher)
     server.streams += 1

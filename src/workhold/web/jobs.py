@@ -187,7 +187,7 @@ class Jobs:
     freeing: asyncio.Task[None] | None = field(default=None, init=False)
 
     def get(self, name: str) -> ServerJob | None:
-        """Find a job by its name and notes its use; None when there is none (any more)."""
+        """Find a job by its name and note that it was used; None if it does not exist (any more)."""
         job = self.by_name.get(name)
         if job is not None:
             job.used = monotonic()
@@ -224,7 +224,7 @@ class Jobs:
         return job
 
     async def stop_when_left(self, job: ServerJob) -> None:
-        """Cancel a job once nobody has asked for it or followed it for as long as the limits say."""
+        """Cancel a job once no client has asked for it or followed it for as long as the limits say."""
         while not job.is_over:
             away = 0.0 if job.watchers else monotonic() - job.used
             if away >= self.limits.left_seconds:

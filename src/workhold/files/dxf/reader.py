@@ -198,7 +198,7 @@ def read_unit_code(document: Any, content: bytes) -> int | str:
 
 
 def normalize_unit_code(value: Any) -> int | str:
-    """Return an $INSUNITS as a whole number, or as it is written where it is none."""
+    """Return an $INSUNITS as a whole number, or as it is written if it is not a whole number."""
     number = read_number(value)
     return int(number) if isfinite(number) and number == int(number) else str(value)
 

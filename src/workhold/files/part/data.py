@@ -102,7 +102,7 @@ def read_json(path: Path, content: bytes, options: Mapping[str, Any], own: bool)
 
 
 def read_solid_outline(content: Mapping[str, Any]) -> SolidOutline | None:
-    """Return the solid of a result file's workpiece, None where it has none; refuse one that is not complete."""
+    """Return the solid of a result file's workpiece, None if it has no solid; refuse an incomplete one."""
     workpiece, solid = content.get("workpiece"), content.get("solid")
     if solid is None or not isinstance(workpiece, dict):
         return None
@@ -226,7 +226,7 @@ def make_chain_from_corners(corners: Sequence[tuple[float, float]], kind: str) -
 
 
 def make_chain_from_array(points: Any, scale: float) -> Chain:
-    """Return the closed chain in mm of an array of corners; refuse arrays that are none."""
+    """Return the closed chain in mm of an array of corners; refuse any other array."""
     corners = [(scale * x, scale * y) for x, y in number_pairs(points, "a corner of an outline", CORNERS)]
     if len(corners) < 3:
         raise InputError(f"an outline of {len(corners)} corners is not possible: {CORNERS}.")

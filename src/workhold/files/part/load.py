@@ -208,7 +208,7 @@ def read_workpiece(
 def refuse_unsure_numbers(
     loaded: Loaded, faces: Sequence[int], called: Mapping[str, str] | None = None
 ) -> None:
-    """Refuse faces named by number where the numbers depend on a height of the pegs that nobody has said.
+    """Refuse faces named by number if the numbers depend on a peg height that was not given.
 
     Parameters
     ----------

@@ -199,7 +199,7 @@ def build_workpiece(
 
 
 def refuse_large(segments: int) -> None:
-    """Raise an InputError for a part of so many segments that no fixture search would end."""
+    """Raise an InputError for a part with more segments than a search can handle."""
     if segments > MOST_SEGMENTS:
         raise InputError(
             f"the part has {segments} segments, more than the {MOST_SEGMENTS} this program takes: draw its "

@@ -149,7 +149,7 @@ def list_layers_of_document(
 
 
 def drop_unusable_chains(chains: list[Chain]) -> list[Chain]:
-    """Return the chains, or none of them where a number is none or far too large."""
+    """Return the chains; return no chain if one of their numbers is not finite or far too large."""
     try:
         drop_zero_lengths(chains)
     except InputError:

@@ -354,7 +354,7 @@ class Interpreter:
             modes.cycle, modes.sticky = cycle, {}
 
     def move_once(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Take a move to a place of the machine's own, after which nobody knows where the axes are.
+        """Note a move to a place of the machine's own, after which the places of the axes are unknown.
 
         Refuses G53 with anything but G0, and a place that is passed and not known.
         """
@@ -455,7 +455,7 @@ class Interpreter:
         return from_x + x, from_y + y
 
     def read_arc_turns(self, values: dict[str, float]) -> int:
-        """Return how many turns an arc makes at most, P; refuse a number that is none."""
+        """Return how many turns an arc makes at most, P; refuse a P that is no such number."""
         turns = values.get("P", 1.0)
         if turns != int(turns) or not 1 <= turns <= MOST_TURNS:
             raise InputError(

@@ -139,7 +139,7 @@ class PathWriter:
         return place
 
     def forget_position(self, axes: Iterable[int], why: str) -> None:
-        """Take it that nobody knows any more where the tip is along some axes, and why."""
+        """Note that the place of the tip along some axes is unknown from here on, and why."""
         for axis in axes:
             self.modes.place[axis], self.modes.lost[axis] = None, why
         if self.modes.place[2] is None:
@@ -391,7 +391,7 @@ def read_drilling_heights(path: PathWriter, values: dict[str, float]) -> tuple[f
 
 
 def read_drilling_repeats(path: PathWriter, values: dict[str, float]) -> int:
-    """Return how often a block drills: L, or K on other controls; refuse both, and a number that is none."""
+    """Return how often a block drills: L, or K on other controls; refuse both together and wrong numbers."""
     given = [values[key] for key in "LK" if key in values]
     if len(given) > 1:
         raise InputError("a drill cycle has both L and K: write one of them.")

@@ -184,7 +184,7 @@ def compute_height_of_zero(z_zero: ZZero, thickness: float | None) -> float:
 
 
 def place_of(start: Sequence[float]) -> Place:
-    """Return the place of the tip at the start in mm; refuse one that is none."""
+    """Return the place of the tip at the start in mm; refuse what is not a place."""
     values = tuple(convert_real(value, "the start of the program") for value in start)
     if len(values) != 3 or not all(isfinite(value) for value in values):
         raise InputError("the start of the program is no place: give X, Y and Z in mm, from its own zero.")
@@ -243,7 +243,7 @@ def gives_height(block: ProgramBlock) -> bool:
 
 
 def has_length(block: ProgramBlock) -> bool:
-    """Return whether a block puts the length of a tool in force; number 0 is none."""
+    """Return whether a block puts the length of a tool in force; number 0 takes it away."""
     if not any(letter == "G" and normalize_code(text) == "43" for letter, text in block.words):
         return False
     return not any(letter == "H" and float(text) == 0.0 for letter, text in block.words)

@@ -198,7 +198,7 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
 
 
 def parse_tool_comment(text: str) -> tuple[int | None, dict[str, str]] | None:
-    """Return the tool that a comment describes and its fields, None for its number where it is the one in use."""
+    """Return the tool that a comment describes and its fields; None as its number means the tool in use."""
     if match := COMMENT.match(text):
         before, after = match[2].strip(" -"), match[4].rpartition(" - ")[2].strip()
         return int(match[1]), {"diameter": match[3], "name": before or ("" if "=" in after else after)}

@@ -60,7 +60,7 @@ class ColumnsSink:
         return self.path.resolve().parent
 
     def receive(self, result: Result, listed: int, tables: Iterable[FixtureTable]) -> None:
-        """Write a result and its fixtures, so many unless somebody asks to stop."""
+        """Write a result and its fixtures, as many as arrive before the user stops."""
         counts = Counter[str]()
         bends = result.query.knows_heights
         figures = len(FIGURES) if bends else BEFORE_PINS

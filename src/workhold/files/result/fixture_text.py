@@ -361,7 +361,7 @@ HEADER = ("hole", "carrier", "column", "row", "x", "y", "diameter", "length", "u
 def write_pin_list(
     fixture: Fixture, toolkit: Toolkit, unit: Unit, dowel: str | None, length: float | None
 ) -> str:
-    """Return a row for each pin, in the fixture's order; a clamp is none.
+    """Return a row for each pin, in the fixture's order; clamps have no row.
 
     Parameters
     ----------

@@ -112,7 +112,7 @@ class SolidPart(FormPart):
     least_band: float
 
     def to_outline(self, workpiece: WorkpiecePart) -> SolidOutline:
-        """Return the solid with the bands of its outline; refuse one without bands, and heights that are none."""
+        """Return the solid with the bands of its outline; refuse one without bands, and impossible heights."""
         if workpiece.bands is None:
             raise InputError("it has a solid, but the workpiece has no bands.")
         return SolidOutline.of_entries(self.model_dump(), workpiece.model_dump())

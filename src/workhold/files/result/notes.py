@@ -110,7 +110,7 @@ NUMBER = re.compile(r"[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 def recognize_note(sentence: str, query: Query, verified: int) -> Note:
-    """Return the note that a sentence says, of a result with so many verified candidates; else a remark."""
+    """Return the note that a sentence states, in a result with ``verified`` verified candidates; else a remark."""
     words = [word.replace(",", "") for word in NUMBER.findall(sentence)]
     thinkable = list_possible_notes([float(word) for word in words], query, verified)
     return next((note for note in thinkable if note.words == sentence), Remark(sentence))

@@ -104,7 +104,7 @@ def describe_columns(travels: int, has_program: bool = False, figures: int = BEF
 
 
 def drop_swept_piece(entries: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the entries as they are, but for those of a swept piece, which are many."""
+    """Return the entries without those of a swept piece, which are many."""
     return None if entries.keys() == PIECE_KEYS else entries
 
 
@@ -380,7 +380,7 @@ def split_fixture_texts(stream: BinaryIO, after: list[bytes], path: Path) -> Ite
 
 
 def parse_fixture_text(text: bytes) -> Any:
-    """Return the fixture of a line; raise OtherLayoutError where that is none by itself."""
+    """Return the fixture of a line; raise OtherLayoutError if the line is not one whole fixture."""
     try:
         return parse_json(text.decode())
     except UnicodeDecodeError:

@@ -243,7 +243,7 @@ def read_peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
 
 
 def find_indices(words: NDArray[np.str_], names: Sequence[str]) -> NDArray[np.int8]:
-    """Return the place of each word among some names; -1 for a word that is none of them."""
+    """Return the place of each word among some names; -1 for a word that is not among them."""
     out = np.full(words.shape, -1, np.int8)
     for index, name in enumerate(names):
         out[words == name] = index

@@ -224,7 +224,8 @@ def make_solid_entry(solid: SolidOutline | None) -> dict[str, Any]:
 
 
 def make_own_outlines_entry(workpiece: Workpiece) -> dict[str, Any]:
-    """Return what carriers with heights of their own meet, as it is written; nothing where there are none.
+    """Return the outlines of carriers with heights of their own, as they are written; empty without such
+    carriers.
 
     Their segments are numbered on after those of the workpiece, in the order in which they stand. An outline
     that is equal to one before it has the numbers of that.

@@ -451,7 +451,9 @@ class Run:
         return self.lower.compute_height_at(position), self.upper.compute_height_at(position)
 
     def compute_common_band(self, low: float, high: float) -> Band:
-        """Return the heights that it has at every position between two; below 0 long where there are none."""
+        """Return the heights that it has at every position between two; of negative length if there are no
+        such heights.
+        """
         return self.lower.compute_height_range(low, high)[1], self.upper.compute_height_range(low, high)[0]
 
     def bound_length(self, low: float, high: float) -> float:

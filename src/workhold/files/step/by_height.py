@@ -154,8 +154,7 @@ def read_as_plain_data(content: bytes, view: dict[str, Any], or_silhouette: bool
 
 
 def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightDrawing | Drawing:
-    """Return the outline of pegs as high as the part; the silhouette where there is none of these to be
-    touched.
+    """Return the outline for pegs as high as the part; the silhouette if such pegs can touch nothing.
 
     The silhouette offers lines and arcs in the place of other curves. It has no heights, and faces that lean
     may be touched.
@@ -189,7 +188,7 @@ def draw_at_usual_height(solids: tuple[Solid, ...], view: HeightView) -> HeightD
 
 
 def takes_long_by_sections(solid: StandingSolid) -> bool:
-    """Return whether a silhouette made of sections would take the library longer than anybody waits."""
+    """Return whether a silhouette made of sections would take the library too long."""
     heights = {round(z, 5) for face in solid.faces if face.lie != "upright" for z in (face.low, face.high)}
     return len(heights) * len(solid.faces) > MOST_SECTIONS
 

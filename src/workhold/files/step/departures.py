@@ -206,7 +206,7 @@ def describe_silhouette(outline: Outline, layers: Sequence[Layer], shape: Any) -
 
 
 def find_other_axis(solid: Any, axis: str) -> str:
-    """Return another axis along which no face of a solid leans; empty when there is none."""
+    """Return another axis along which no face of a solid leans; empty if there is no such axis."""
     surfaces = [occ.BRepAdaptor_Surface(face) for face in list_sub_shapes(solid, "FACE")]
     for name, (_, _, up) in AXES.items():
         if name != axis.lstrip("-") and all(classify_lie(surface, up) != "leaning" for surface in surfaces):

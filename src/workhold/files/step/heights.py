@@ -526,7 +526,7 @@ def is_like(a: HeightRow, b: HeightRow) -> bool:
 
 
 def find_longest_row(rows: Sequence[HeightRow]) -> HeightRow | None:
-    """Return the range with the longest touchable border; of equal ones that of the highest pegs."""
+    """Return the range with the longest touchable border; if several are equal, the one for the highest pegs."""
     most = max((row.touchable for row in rows), default=0.0)
     return max(
         (row for row in rows if row.touchable >= most * (1 - 1e-9) > 0),

@@ -261,8 +261,8 @@ def measure_longest_run(one: Covered, bound: float) -> float:
 
 
 def find_common_band(stretch: Stretch) -> Band:
-    """Return the longest range of heights that lies in one run at each point of a stretch; of equal ones the
-    lower.
+    """Return the longest range of heights that lies in one run at each point of a stretch; if several are
+    equal, the lowest.
 
     It is 0 long where there is none.
     """
@@ -347,7 +347,7 @@ def join_strips(strips: Sequence[Strip]) -> list[Strip]:
 
 
 def make_strips_over_stretch(stretch: Stretch, band: Band | None) -> list[Strip]:
-    """Return the strip over a stretch; two for a wide arc, none for one that comes of rounding."""
+    """Return the strip over a stretch: two for a wide arc, none for a stretch left by rounding."""
     carrier, forward = stretch[0].piece.carrier, stretch[0].piece.forward
     begin, size = stretch[0].ends[0], sum(one.size for one in stretch)
     if size <= carrier.slack:

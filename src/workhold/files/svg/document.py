@@ -430,7 +430,7 @@ def refuse_media(media: str, place: str) -> None:
 
 
 def count_css_letters(text: str) -> int:
-    """Return the letters of CSS, but for embedded fonts and pictures, which take little time."""
+    """Count the letters of CSS without embedded fonts and pictures, which take little time."""
     return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
 

@@ -135,7 +135,7 @@ def make_page_placement(
 
 
 def make_uniform_placement(scale: float, box: ViewBox | None) -> Placement:
-    """Return the map of a user unit of so many mm, with y up and the lower left corner of the viewBox as origin."""
+    """Return the map of user units of ``scale`` mm, with y up and the lower left corner of the viewBox as origin."""
     left, low = (0.0, 0.0) if box is None else (box[0], box[1] + box[3])
     return Placement(scale, 0.0, 0.0, -scale, -scale * left, scale * low)
 
@@ -167,7 +167,8 @@ def are_scales_equal(one: float, other: float) -> bool:
 def compute_file_scales(
     root: ShapeElement, pixel: float, size: Size, box: ViewBox | None
 ) -> tuple[float, float] | None:
-    """Return the millimetres per user unit in x and y by the page's size in mm; None where there is none.
+    """Return the millimetres per user unit in x and y, from the page's size in mm; None if the page has no
+    size.
 
     ``pixel`` is a user unit in mm where there is no viewBox. Refuses a size that is not positive.
     """

@@ -81,7 +81,7 @@ class SelectorMatcher:
         self.count = 0
 
     def add(self, prelude: Tokens) -> list[int]:
-        """Add a list of selectors; return a number for each, but for those of pseudo-elements.
+        """Add a list of selectors; return a number for each that does not select a pseudo-element.
 
         Raises
         ------

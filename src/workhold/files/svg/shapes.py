@@ -56,7 +56,7 @@ class Shape:
 
 
 def are_equal_points(p: Point, q: Point) -> bool:
-    """Return whether two points are equal but for rounding."""
+    """Return whether two points are equal within rounding."""
     return hypot(p[0] - q[0], p[1] - q[1]) <= 1e-12 * (1 + abs(p[0]) + abs(p[1]))
 
 

@@ -159,13 +159,13 @@ def refuse_effects(figure: ShapeElement) -> None:
 
 
 def is_positive_opacity(text: str) -> bool | None:
-    """Return whether an opacity is above 0; None when it is none."""
+    """Return whether an opacity is above 0; None for a text that is not an opacity."""
     match = LENGTH.match(text)
     return None if match is None or match.group(2) not in ("", "%") else float(match.group(1)) > 0
 
 
 def is_positive_width(text: str) -> bool | None:
-    """Return whether a stroke's width is above 0; None when it is none."""
+    """Return whether a stroke's width is above 0; None for a text that is not a width."""
     match = LENGTH.match(text)
     return None if match is None or float(match.group(1)) < 0 else float(match.group(1)) > 0
 
@@ -180,7 +180,7 @@ def is_dash_pattern(text: str) -> bool | None:
 
 
 def is_opaque(text: str) -> bool | None:
-    """Return whether a colour is not fully transparent; None when it is none."""
+    """Return whether a colour is not fully transparent; None for a text that is not a colour."""
     text = PROFILE.sub("", text)
     if HEX.match(text):
         return len(text) in (4, 7) or int(text[1:], 16) % (16 if len(text) == 5 else 256) > 0
@@ -202,7 +202,7 @@ def link_of(text: str) -> tuple[str, str] | None:
 
 
 def resolve_paint(text: str, styles: Styles) -> str | None:
-    """Return what a paint shows; None when it is none (SVG 2, 13.2)."""
+    """Return what a paint shows; None for a text that is not a paint (SVG 2, 13.2)."""
     if text in (NONE, CURRENT):
         return text
     if text in ("context-fill", "context-stroke"):

@@ -148,7 +148,7 @@ def read_css_arguments(name: str, text: str) -> list[float] | None:
 
 
 def make_single_transform(name: str, v: list[float]) -> Placement | None:
-    """Return one transform function, angles in degrees; None when it is none."""
+    """Return one transform function, angles in degrees; None if SVG has no such function."""
     count = len(v)
     match name, count:
         case "matrix", 6:

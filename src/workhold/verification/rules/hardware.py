@@ -208,7 +208,7 @@ class ToolkitRules:
         return {f"place of the tip of {name} on its line": travel for name, travel in named}
 
     def has_its_pegs(self, fixture: Fixture) -> bool:
-        """Return whether the pegs of a fixture are those of its type and directions, in their order but for jaws."""
+        """Return whether a fixture has the pegs of its type and directions, in order; jaws may come in either order."""
         directions, carriers = list_directions(fixture), self.carriers.values()
         pegs = next((one.pegs for one in self.toolkit.arrangements if one.name == fixture.type), ())
         still = [

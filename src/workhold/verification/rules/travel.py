@@ -123,7 +123,7 @@ def count_quarter_turns(direction: str) -> int:
 
 
 def turn_hole_back(turns: int, column: int, row: int) -> tuple[int, int]:
-    """Return the column and row of a hole on the plate turned back by so many quarter turns."""
+    """Return column and row of a hole on the plate turned back by ``turns`` quarter turns."""
     return ((column, row), (row, -column), (-column, -row), (-row, column))[turns]
 
 
