@@ -46,7 +46,7 @@ def verify(
     progress: Progress | None = None,
     cancel: Event | None = None,
 ) -> Verification:
-    """Prove or refutes every fixture of a result or a result file, and every number written with it.
+    """Prove or refute every fixture of a result or a result file, and every number written with it.
 
     Parameters
     ----------

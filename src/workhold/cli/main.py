@@ -218,7 +218,7 @@ def options(
 
 
 def run() -> NoReturn:
-    """Run the console command and ends the process."""
+    """Run the console command and end the process."""
     for stream in (sys.stdout, sys.stderr):
         # A part's name must not end the program on a terminal that lacks a letter.
         with suppress(AttributeError, ValueError):

@@ -234,7 +234,7 @@ def read_tolerance(text: str | None, unit: Unit) -> Tolerance | None:
 
 
 def add_dowel_fit(asked: Tolerance | None, named: Tolerance | None) -> Tolerance | None:
-    """Return the tolerance asked for, or that of a named vise; keeps the fit of the named vise's dowels."""
+    """Return the tolerance asked for, or that of a named vise; keep the fit of the named vise's dowels."""
     if asked is None or named is None:
         return asked or named
     return evolve(asked, fit=named.fit)

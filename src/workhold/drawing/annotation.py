@@ -313,7 +313,7 @@ class LabelPlacer:
         return costs
 
     def place(self, labels: Sequence[Label], sweeps: int = 4) -> list[Place]:
-        """Return the places labels together: one after another, then each anew among the others until nothing moves."""
+        """Place labels together: one after another, then each anew among the others until nothing moves."""
         kept = [label.keep_cheapest(self.compute_fixed_costs(label)) for label in labels]
         reaches = np.array([label.reach for label in kept]).reshape(-1, 4)
         boxes, anchors = np.zeros((len(kept), 4)), np.zeros((len(kept), 2))

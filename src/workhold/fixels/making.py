@@ -65,7 +65,7 @@ def convert_optional_length(value: float | None, name: str = "a length") -> floa
 def refuse_lattice(
     pitch: tuple[float, float], columns: int | None, rows: int | None, peg_radius: float, noun: str, peg: str
 ) -> None:
-    """Refuse a lattice that cannot be, and pegs too fat for neighbouring holes.
+    """Refuse an impossible lattice, and pegs too thick for neighbouring holes.
 
     ``noun`` and ``peg`` are what the lattice and what stands in its holes are called.
     """

@@ -214,7 +214,7 @@ def split_into_clusters(
 
 
 def order_by_same_holes(c: Candidates) -> tuple[IntArray, IntArray]:
-    """Order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in
+    """Return the order (N,) by type, holes and orientation, and in that order the number (N,) of each set that agrees in
     all these."""
     words = pack_holes(c)
     order = order_of(make_keys(*words, c.theta))

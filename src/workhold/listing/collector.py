@@ -72,7 +72,7 @@ BLOCK = 1 << 14
 
 
 def finish(records: list[Array], problem: Problem, cancel: Event | None = None) -> tuple[Candidates, Account]:
-    """Decide records, brings them to the listed form and list them once, on this thread.
+    """Decide records, bring them to the listed form and list them once, on this thread.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ class Batches:
     waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
 
     def add(self, records: Array) -> list[Array]:
-        """Take records (N, 19); the blocks that are full."""
+        """Take records (N, 19); return the blocks that are full."""
         self.waiting.append(records)
         if sum(map(len, self.waiting)) < BLOCK:
             return []

@@ -232,7 +232,7 @@ class RankedTable:
             self.measure()
 
     def measure(self) -> None:
-        """Measure what waits; where only the best are asked for, keeps what may be among them."""
+        """Measure what waits; where only the best are asked for, keep what may be among them."""
         if not self.waiting:
             return
         query, most, table = self.query, self.query.best, FixtureTable.joined(self.waiting)

@@ -193,7 +193,7 @@ class JawJudge:
                         return
 
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
-        """Return whether the hull of an outline has a straight piece: by far sides of a fine fan of directions."""
+        """Return whether the convex hull of an outline has a straight edge, tried in many directions."""
         points = np.array([point for one in segments for point in sample_segment(one)])
         hull = np.array(find_hull_corners([(float(x), float(y)) for x, y in points.round(9)]))
         sides = np.hypot(*(np.roll(hull, -1, axis=0) - hull).T)

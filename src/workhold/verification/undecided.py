@@ -190,7 +190,7 @@ def find_holes_fault(entry: Undecided, query: Query) -> str:
 
 
 def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
-    """Return what is wrong with the place of an entry; empty when nothing is, and where that is not certain."""
+    """Return what is certainly wrong with the place of an entry; empty if nothing is."""
     if entry.reach_deg is None and not is_of_chords(entry):
         return ""
     entry, carriers = turn_entry_along_x(entry, query)

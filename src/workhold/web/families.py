@@ -151,7 +151,7 @@ def find_family(payload: AskedQueries, order: Order) -> FamilyFound:
 
 
 def number_repeated_names(names: list[str]) -> list[str]:
-    """Return the numbers names that are repeated, so that no two are the same.
+    """Number the names that are repeated, so that no two are the same.
 
     >>> number_repeated_names(["a", "b", "a"])
     ['a', 'b', 'a (2)']

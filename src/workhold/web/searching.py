@@ -85,7 +85,7 @@ class Found:
 
 
 def search(payload: tuple[AskedQueries, int, bool], order: Order) -> Found:
-    """Return the searches; reports are ("progress", fraction, found), ("preview", result) and ("first",
+    """Search; the reports are ("progress", fraction, found), ("preview", result) and ("first",
     result).
 
     Results that are reported are of the query as it was asked.

@@ -241,7 +241,7 @@ class Interpreter:
         return used
 
     def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Put the codes of a block in force that stay so; passes over those that say nothing of the path.
+        """Put the codes of a block in force that stay so; pass over those that say nothing of the path.
 
         Returns the letters that belong to them. Refuses a spline, and a zero with a number that is none.
         """

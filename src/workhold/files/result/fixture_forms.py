@@ -61,7 +61,7 @@ class SeatContactPart(SeatingKeys):
 
     @model_validator(mode="after")
     def one_of_both(self) -> SeatContactPart:
-        """Refuses a contact with neither or both."""
+        """Refuse a contact with neither or both."""
         if (self.face is None) == (self.corner is None):
             raise ValueError("a contact is on a face or on a corner")
         return self

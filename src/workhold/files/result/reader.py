@@ -115,7 +115,7 @@ def read_result(path: str | Path) -> Result:
 
 
 def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> Columns | list[AnyHoldPart]:
-    """Fixtures as arrays; such as friction holds as they are."""
+    """Return fixtures with pegs as arrays, and fixtures held by friction as they are."""
     iterator = iter(fixtures)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)

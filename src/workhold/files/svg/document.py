@@ -110,7 +110,7 @@ class Document:
 
 
 def read_document(content: bytes, budget: Budget) -> Document:
-    """Return the tree of an SVG file.
+    """Read the tree of an SVG file.
 
     Refuses files that are no SVG, style sheets outside the file, and animations. Refuses XML that is broken
     (with line and column), nested without end, asks for more than ``budget`` has, or declares entities or
