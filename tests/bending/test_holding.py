@@ -183,6 +183,8 @@ def test_only_faces_to_be_cut_count() -> None:
     face = bent(result, jaw_force=3000.0, faces=(3, "bottom"))
     assert max(top.clamp_distortion.value, face.clamp_distortion.value) <= whole.clamp_distortion.value
     assert top.clamp_distortion.at[2] == pytest.approx(HIGH)
+    low = bent(result, jaw_force=3000.0, faces=("bottom",))
+    assert low.clamp_distortion.at[2] == pytest.approx(0.0)
     assert (whole.faces, top.faces, face.faces) == (None, "top", "bottom, faces 3")
     with pytest.raises(InputError, match="face 9 of plate does not exist"):
         bent(result, faces=(9,))

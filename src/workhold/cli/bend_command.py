@@ -9,7 +9,7 @@ import typer
 from attrs import frozen
 
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import SHOWN_UNIT, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, refuse_output, write_picture
 from workhold.cli.progress import show_progress
@@ -135,7 +135,13 @@ def bend(
         ask_to_stop("what is found so far is told") as cancel,
         show_progress("Bending", f"of {len(rows)}", "Meshing the part") as progress,
     ):
-        found = find_bendings(result, rows, whole, asked, cancel, progress)
+
+        def tell(fraction: float, count: int) -> None:
+            if count:
+                keep_what_is_found()
+            progress(fraction, count)
+
+        found = find_bendings(result, rows, whole, asked, cancel, tell)
     ranked = rank_bendings(list(zip(rows, found, strict=False)), figure)
     printed = choose_printed_unit(unit, result.toolkit)
     written = write_first(ranked, result, picture, model, printed)
