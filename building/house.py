@@ -37,6 +37,7 @@ NAMED_TWICE = {
 KIND_CLASSES = {"Vise", "OpeningVise", "Plate", "Fence", "FlatJaw", "PlainVise"}
 KIND_NAMES = {
     "vise", "opening-vise", "gripper", "translating-clamp", "plate", "edge", "fence", "flat-jaw", "plain-vise",
+    "strapped",
 }  # fmt: skip
 # Attributes by which a toolkit, a peg or a contact is asked for its kind.
 KIND_ATTRIBUTES = {"has_a_hole", "is_along_x", "is_on_wall", "is_wall", "needs_pairs", "wall"}

@@ -55,7 +55,7 @@ NAMING = (
     'changed({"row_offset": 1, "pitch": 2})',
     '("pitch", "row_offset")',
     'name != "row_offset"',
-    "@made_from_table\nclass Kind:\n    def f(self): return self.row_offset",
+    "@make_class_from_table\nclass Kind:\n    def f(self): return self.row_offset",
 )
 NOT_NAMING = (
     "row_offset = 3",
@@ -70,7 +70,7 @@ NOT_NAMING = (
     '("offset", "row_offset")',
     'answer["row_offset"]',
     "ROW_OFFSET.name",
-    "@made_from_table\nclass Kind:\n    row_offset: float",
+    "@make_class_from_table\nclass Kind:\n    row_offset: float",
 )
 
 

@@ -127,7 +127,14 @@ def test_lists_tell_all_of_it(run: Any, folder: Path) -> None:
     assert [part["name"] for part in told(run("parts", "--json"))["parts"]][-1] == "widget"
     assert {one["name"] for one in told(run("toolkits", "--json"))["toolkits"]} == {
         name
-        for kind in (workhold.Vise, workhold.Plate, workhold.Fence, workhold.FlatJaw, workhold.PlainVise)
+        for kind in (
+            workhold.Vise,
+            workhold.Plate,
+            workhold.Fence,
+            workhold.FlatJaw,
+            workhold.PlainVise,
+            workhold.StrapPlate,
+        )
         for name in kind.presets()
     }
     vise = next(

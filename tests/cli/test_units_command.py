@@ -206,7 +206,7 @@ def test_the_manual_lists_every_preset() -> None:
         pitch, peg = unit.format_short_length(first.pitch[0]), unit.format_short_length(2 * first.peg_radius)
         of = unit.abbreviation
         assert f"\n| `{name}` | {pitch} {of} | {peg} {of} | {first.columns or 'any'} |" in page
-    kinds = ("plate-", "table-", "gripper-", "clamp-", "fence-", "two-clamp-", "machine-vise-")
+    kinds = ("plate-", "table-", "gripper-", "clamp-", "fence-", "two-clamp-", "machine-vise-", "strap-")
     assert sum(page.count(f"\n| `{kind}") for kind in kinds) == sum(
         bool(load_toolkit(name).toolkit.plates) for name in list_preset_names()
     )

@@ -121,7 +121,7 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
     kinds = 0
     for fixture in of_every_kind(result):
         told = by_hand(fixture, result.workpiece, result.toolkit)
-        push, touch, order, friction, after = told.list_steps()
+        push, touch, order, friction, after = told.steps()
         locators = [peg for peg in fixture.pegs[:3] if not peg.is_on_wall]
         assert all(peg.hole in push and f"{peg.touching} at {peg.hole}" in touch for peg in locators)
         on_wall = [peg for peg in fixture.pegs if peg.is_on_wall]
@@ -144,9 +144,9 @@ def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> Non
             fixture.pair.working_ratio < 0.1
             or f"{fixture.pair.working_ratio:.2f} times the force of {fixture.pegs[3].hole}" in friction
         )
-        assert told.list_steps(with_order=False)[2] == order.removeprefix(order_words(fixture) + " ")
+        assert told.steps(with_order=False)[2] == order.removeprefix(order_words(fixture) + " ")
         assert all(f"at {tip.hole}" in after for tip in fixture.pegs[3:])
-        assert not any("--" in step for step in (*told.list_steps(), WHY))
+        assert not any("--" in step for step in (*told.steps(), WHY))
         kinds += 1
     assert kinds >= 3
 
@@ -178,5 +178,5 @@ def test_of_pegs_with_a_flat_no_friction_is_told() -> None:
     """Their contact does not stay near one point as the part turns; all else is said."""
     plate = evolve(PLATE, flat=2.5)
     [told] = workhold.seatings(workhold.design(RECTANGLE, plate, best=1))
-    assert told.sticking_friction is None and len(told.list_steps()) == 4
-    assert "friction" not in " ".join(told.list_steps()) and "sticks" not in repr(told)
+    assert told.sticking_friction is None and len(told.steps()) == 4
+    assert "friction" not in " ".join(told.steps()) and "sticks" not in repr(told)

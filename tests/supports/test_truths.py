@@ -128,7 +128,7 @@ def test_triples_are_checked_one_by_one_as_they_are_read(
     forms = []
     usual = TripleReader.read_triple
     monkeypatch.setattr(
-        TripleReader, "checked", lambda self, entry: (forms.append(self.count), usual(self, entry))[1]
+        TripleReader, "read_triple", lambda self, entry: (forms.append(self.count), usual(self, entry))[1]
     )
     assert all(isinstance(triple, ReadTriple) for triple in read_supports_part(path).triples)
     assert forms == [0, 1, 2]

@@ -193,7 +193,7 @@ def read_directions(option_name: str, text: str) -> list[str | tuple[str, ...]]:
 READERS: Mapping[str, Callable[[str, Any, Unit], Any]] = {
     "count": lambda name, text, unit: read_whole_number(name, text),
     "length": read_length,
-    "pitch": lambda name, text, unit: read_pitches(text, unit),
+    "pitch": read_pitches,
     "span": read_length_range,
     "flat": read_lengths,
     "heights": read_length_range,
@@ -416,8 +416,8 @@ def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[Toolkit
 
 def read(row: ToolkitField, word: str, unit: Unit) -> Any:
     """Read an entry of the list of a field; lengths come in mm."""
-    if row is PITCH:
-        return read_pitch(word, unit)
+    if row.form == PITCH.form:
+        return read_pitch(row.option, word, unit)
     if row.form == TRAVEL.form and word.count(":") != 1:
         raise InputError(
             f"{row.option} {word!r} is not two lengths: give the least and the most with a colon, such as "
@@ -448,7 +448,7 @@ def split_words(option: str, text: str) -> list[str]:
     return words
 
 
-def read_pitch(word: str, unit: Unit) -> tuple[float, float]:
+def read_pitch(option_name: str, word: str, unit: Unit) -> tuple[float, float]:
     """Read a pitch for both directions, or ``XxY``."""
     x, cross, y = word.partition("x")
-    return read_length("--pitch", x, unit), read_length("--pitch", y if cross else x, unit)
+    return read_length(option_name, x, unit), read_length(option_name, y if cross else x, unit)

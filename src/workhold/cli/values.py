@@ -148,7 +148,7 @@ def read_optional_positive_length(option: str, text: str | None, unit: Unit = MI
     return value
 
 
-def read_pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
+def read_pitches(option_name: str, text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
     """Return the x and y pitch in mm, from one length or two.
 
     Parameters
@@ -157,17 +157,19 @@ def read_pitches(text: str, unit: Unit = MILLIMETRE) -> tuple[float, float]:
 
     Examples
     --------
-    >>> read_pitches("10"), read_pitches("10,12.5"), read_pitches("1/2in,1in")
-    ((10.0, 10.0), (10.0, 12.5), (12.7, 25.4))
+    >>> read_pitches("--pitch", "10,12.5"), read_pitches("--pitch", "1/2in")
+    ((10.0, 12.5), (12.7, 12.7))
     """
     parts = text.split(",")
     if len(parts) > 2:
-        raise InputError(f"--pitch {text!r} has {len(parts)} numbers: give one for both directions, or X,Y.")
+        raise InputError(
+            f"{option_name} {text!r} has {len(parts)} numbers: give one for both directions, or X,Y."
+        )
     try:
-        numbers = [read_length("--pitch", part, unit) for part in parts]
+        numbers = [read_length(option_name, part, unit) for part in parts]
     except InputError as error:
         raise InputError(
-            f"--pitch {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, "
+            f"{option_name} {text!r} is not a distance between holes: give it in {unit.abbreviation}, such as 10, "
             "or as X,Y, such as 10,12.5."
         ) from error
     return numbers[0], numbers[-1]

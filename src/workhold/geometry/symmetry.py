@@ -33,7 +33,7 @@ __all__ = [
 def rotate_vectors(x: Any, y: Any, angle: Any) -> tuple[Any, Any]:
     """Vectors turned counter-clockwise by angles in radians; numbers or arrays of matching shapes.
 
-    >>> [round(float(v), 12) for v in rotated(3.0, 1.0, np.pi / 2)]
+    >>> [round(float(v), 12) for v in rotate_vectors(3.0, 1.0, np.pi / 2)]
     [-1.0, 3.0]
     """
     cosine, sine = np.cos(angle), np.sin(angle)

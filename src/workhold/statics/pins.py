@@ -53,7 +53,7 @@ def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
 
     Examples
     --------
-    >>> round(deflections(500.0, 38.0, 6.0), 3)
+    >>> round(compute_deflections(500.0, 38.0, 6.0), 3)
     0.694
     """
     inertia, area = pi * diameter**4 / 64, pi * diameter**2 / 4
