@@ -176,7 +176,7 @@ with ask_to_stop("what was found is kept") as event:
         keep_what_is_found()
         assert not event.is_set()
 if {interrupted}:
-    ending.ending.lose_patience(signal.SIGINT)
+    ending.ending.end_impatiently(signal.SIGINT)
     print("written", flush=True)
 else:
     ready = False

@@ -195,7 +195,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(
         assert outcome.exit_code == 0 and not outcome.stderr
         assert max(map(len, outcome.stdout.splitlines())) <= 80
         [told], text = workhold.seatings(made, [fixture]), " ".join(outcome.stdout.split())
-        steps = told.list_steps(INCH.format_length)
+        steps = told.steps(INCH.format_length)
         assert (
             f"Seating of fixture {rank} of {len(made)}: square Neither of the two clamps holds the part alone"
             in text
@@ -241,7 +241,7 @@ def test_a_search_for_seating_with_two_clamps_is_told_by_show(run: Any, tmp_path
     for rank, [told] in ((rank, workhold.seatings(result, [result[rank - 1]])) for rank in (2, 3)):
         text = " ".join(run("show", tmp_path / "r.json", rank).stdout.split())
         shown = json.loads(run("show", tmp_path / "r.json", rank, "--json").stdout)["fixture"]
-        assert all((step in text) == (rank == 2) for step in told.list_steps()[:2])
+        assert all((step in text) == (rank == 2) for step in told.steps()[:2])
         assert shown.get("by_hand") == (told.as_fields() if rank == 2 else None)
     refused = run(*asked, "--foolproof")
     assert refused.exit_code == 2 and "ask for the seating alone" in refused.stderr

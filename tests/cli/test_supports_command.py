@@ -207,7 +207,7 @@ def test_friction_is_a_line_of_its_own_and_ranks_nothing(result_file: Path, run:
         refused = run(*words, "--friction", wrong)
         assert refused.exit_code == 2 and sentence in refused.stderr
     bare = run(*words[:5], "--friction", "0.2")
-    assert bare.exit_code == 2 and "--friction needs loads, and there are none" in bare.stderr
+    assert bare.exit_code == 2 and "--friction needs loads: give --load too" in bare.stderr
 
 
 @pytest.mark.thorough

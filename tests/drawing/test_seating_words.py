@@ -220,7 +220,7 @@ def test_with_two_clamps_it_says_what_to_do_by_hand(toolkit: Plate | Fence) -> N
             pages = draw_setup_sheet(result, rank, seating=seating)
             words = " ".join(word for page in pages for word in texts(page))
             wanted = seating or (seating is None and rank == 2)
-            steps = told.list_steps(
+            steps = told.steps(
                 LengthUnit.from_typical_length(MILLIMETRE, 20.0).format_length, with_order=False
             )
             why = "Neither of the two clamps holds the part alone"

@@ -29,7 +29,7 @@ MODULE = """
 import os, pathlib, time
 LOADED_BY, LEFT = os.getpid(), []
 def prepare(): pass
-def plain(content):
+def read_as_plain_data(content):
     if content == b"crash": os.abort()
     if content: pathlib.Path(content.decode() + "-begun").touch()
     while content and not pathlib.Path(content.decode()).exists(): time.sleep(0.02)
