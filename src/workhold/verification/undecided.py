@@ -43,6 +43,9 @@ from workhold.verification.touching import find_points_on_circle, find_points_on
 
 __all__ = ["find_undecided_faults"]
 
+# Pegs of an entry of one clamp, or of two chords.
+PEGS = 4
+
 # mm. Features end so much farther out while contacts are sought; contacts are off by their errors.
 LOOSE = 10 * AGREEMENT
 # No unit. Lines with a sine less than this between them may be taken for parallel, and the others cross where
@@ -92,6 +95,12 @@ def find_entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> st
     """Return what is wrong with an entry of four contacts or two chords; empty when nothing is."""
     fault = find_written_fault(entry, query, outline)
     if WALL_END not in query.toolkit.contacts:
+        count = sum(find_arrangement(entry, query).pegs) if not fault else PEGS
+        if not fault and {len(entry.faces), len(entry.columns), len(entry.rows)} != {count}:
+            return f"has not {count} faces and holes"
+        if count != PEGS:
+            # Of three locators alone nothing else is known that a glance could refute.
+            return fault
         fault = fault or find_holes_fault(entry, query) or place_fault(entry, query, outline)
     return fault
 
