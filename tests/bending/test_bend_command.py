@@ -84,7 +84,8 @@ def test_the_model_in_three_dimensions_has_colours(result_file: str, tmp_path: P
     assert "times as far" in document["scenes"][0]["name"]
 
 
-def test_a_table_says_it_in_words(result_file: str) -> None:
+def test_a_table_says_it_in_words(result_file: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "160")
     outcome = run(result_file, "1", "--thickness", "8")
     assert outcome.exit_code == 0, outcome.stderr
     assert "clamping bends µm" in outcome.stdout and "load 1" in outcome.stdout
