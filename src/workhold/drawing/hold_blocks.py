@@ -132,18 +132,6 @@ def write_setting(column: TextColumn, sheet: Sheet) -> None:
         f"{lengths.format_short_number(ends[0], 5)} to {lengths.format_short(ends[1], 5)}",
         bold=True,
     )
-    column.write_fact("opening S", lengths.format_length(hold.opening), 20, bold=True)
-    column.write_fact("on the fixed jaw", describe_touched_faces(hold.fixed), bold=True)
-    column.write_fact("the moving jaw presses", describe_touched_faces(hold.moving), bold=True)
-    column.write_fact(
-        "work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none", bold=True
-    )
-    ends = min(hold.fixed.ends[0], hold.moving.ends[0]), max(hold.fixed.ends[1], hold.moving.ends[1])
-    column.write_fact(
-        "gripped along the jaws",
-        f"{lengths.format_short_number(ends[0], 5)} to {lengths.format_short(ends[1], 5)}",
-        bold=True,
-    )
     column.write_paragraph(f"From the left end of jaws {lengths.format_short(jaws.width)} wide.", NOTE)
 
 
