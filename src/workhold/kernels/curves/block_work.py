@@ -236,13 +236,19 @@ def place_triple(
 
 
 @inner
+def limits_errors(work: BlockWork) -> bool:
+    """Whether only fixtures up to some location error are of interest."""
+    return not work.counting and work.features.precision.most < inf
+
+
+@inner
 def is_far_off(angle: Angle, work: BlockWork) -> bool:
     """Whether two and two pegs in place, just found to be a fixture, have too large a location error.
 
     Where a half turn swaps the carriers, either may turn out to be the one that stands still.
     """
     features, pegs = work.features, work.pegs
-    if features.precision.most == inf or work.counting:
+    if not limits_errors(work):
         return False
     radius = swing = 0.0
     numbers = work.null

@@ -29,7 +29,7 @@ from workhold.kernels.base.tables import Limits
 from workhold.kernels.contact.location_bounds import is_beyond
 from workhold.kernels.contact.record import PEG_FEATURE, PEG_RADIUS, PEG_X, PEG_Y, Angle, place_peg
 from workhold.kernels.contact.rules import minor_band, outward_normal
-from workhold.kernels.curves.block_work import BlockWork, add_listed, add_seat, moves_nothing
+from workhold.kernels.curves.block_work import BlockWork, add_listed, add_seat, limits_errors, moves_nothing
 from workhold.kernels.curves.piece_bounds import HAIR
 
 # mm. Points this far beyond an arc's ends count as points of it: more than ``END_SLACK`` and rounding.
@@ -289,7 +289,7 @@ def add_moving_pegs(out: Array, count: int, angle: Angle, reach: float, work: Bl
     error = pegs[0, PEG_RADIUS] + 4.0 * length * reach
     gap = limits.gap - GAP_SLACK - HAIR - 4.0 * length * reach
     write_triple(triple, pegs, cx, cy, rows, length)
-    if not work.counting and features.precision.most < inf and locators_beyond(angle, work):
+    if limits_errors(work) and locators_beyond(angle, work):
         return count
     asks_closure = not work.counting and limits.pairing == 0.0
     for e in range(features.moving[0], features.moving[1]):

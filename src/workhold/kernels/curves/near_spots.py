@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
-from math import floor
+from math import cos, floor, sin
 
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import HALF_EXTENT, IS_ARC, RADIUS
-from workhold.kernels.base.tables import NearSpots
+from workhold.kernels.base.tables import (
+    CURVE,
+    HEAD,
+    HIGH,
+    LENGTH,
+    LOW,
+    SHIFT,
+    TAIL,
+    Curves,
+    Features,
+    NearSpots,
+)
 from workhold.kernels.chord.evaluation import parameter_on
+from workhold.kernels.contact.location_bounds import write_spot
+from workhold.kernels.curves.piece_bounds import tail_disc
+
+# A disc that holds a contact: its middle and its radius in mm.
+Disc = tuple[float, float, float]
 
 # Rounding of distances in mm, generously counted.
 ROUNDING = 1e-9
@@ -33,13 +49,30 @@ def spots_of(row: Array, feature: int, near: NearSpots, x: float, y: float, radi
 
 
 @inner
+def write_piece_spots(
+    piece: Array, tail_spot: Array, head_spot: Array, features: Features, curves: Curves, length: float
+) -> tuple[Disc, Disc]:
+    """Write the spots of both contacts of a piece, and return the discs that hold them."""
+    number, given = int(piece[CURVE]), features.precision
+    curve, tail, head = curves.reals[number], curves.integers[number, TAIL], curves.integers[number, HEAD]
+    a, b = features.loose[tail], features.loose[head]
+    psi, half = (piece[LOW] + piece[HIGH]) / 2.0, (piece[HIGH] - piece[LOW]) / 2.0
+    x, y, radius = tail_disc(a, b, curve, psi, half)
+    alpha, d = psi + curve[SHIFT], curve[LENGTH]
+    at_x, at_y, off = x + d * cos(alpha), y + d * sin(alpha), radius + d * half
+    write_spot(a, tail, x, y, radius, given, length, tail_spot)
+    write_spot(b, head, at_x, at_y, off, given, length, head_spot)
+    return (x, y, radius), (at_x, at_y, off)
+
+
+@inner
 def may_join(
     a: Array,
     b: Array,
     ends: tuple[int, int],
     near: NearSpots,
-    tail: tuple[float, float, float],
-    head: tuple[float, float, float],
+    tail: Disc,
+    head: Disc,
 ) -> bool:
     """Whether contacts in two discs, on the features of ``ends``, may be those of locators of interest."""
     first, end = spots_of(a, ends[0], near, tail[0], tail[1], tail[2])

@@ -21,10 +21,8 @@ from workhold.kernels.base.tables import (
     CURVE,
     HEAD,
     HIGH,
-    LENGTH,
     LOW,
     ROW_STEP,
-    SHIFT,
     STEADY,
     TAIL,
     VALUE_LEAST,
@@ -44,7 +42,6 @@ from workhold.kernels.contact.location_bounds import (
     CONTACT_LENGTH,
     least_error_in,
     most_allowed,
-    write_spot,
 )
 from workhold.kernels.contact.record import angle_of, write_given_up
 from workhold.kernels.contact.rules import share_a_carrier
@@ -62,8 +59,8 @@ from workhold.kernels.curves.block_work import (
     place_triple,
 )
 from workhold.kernels.curves.moving_pegs import add_moving_pegs, height_range
-from workhold.kernels.curves.near_spots import is_any_joined, may_be_three, spots_of
-from workhold.kernels.curves.piece_bounds import HAIR, clear_edges, tail_disc
+from workhold.kernels.curves.near_spots import is_any_joined, may_be_three, spots_of, write_piece_spots
+from workhold.kernels.curves.piece_bounds import HAIR, clear_edges
 from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
@@ -119,17 +116,12 @@ def write_limbs(
 def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, length: float) -> bool:
     """Writes the spots that tail and head of a piece may touch; whether any two are of interest."""
     number, near = int(piece[CURVE]), features.near
-    curve, tail, head = curves.reals[number], curves.integers[number, TAIL], curves.integers[number, HEAD]
-    a, b = features.loose[tail], features.loose[head]
-    psi, half = (piece[LOW] + piece[HIGH]) / 2.0, (piece[HIGH] - piece[LOW]) / 2.0
-    x, y, radius = tail_disc(a, b, curve, psi, half)
-    alpha, d = psi + curve[SHIFT], curve[LENGTH]
-    first, end = spots_of(a, tail, near, x, y, radius)
-    at_x, at_y, off = x + d * cos(alpha), y + d * sin(alpha), radius + d * half
-    begin, last = spots_of(b, head, near, at_x, at_y, off)
-    given = features.precision
-    write_spot(a, tail, x, y, radius, given, length, limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT])
-    write_spot(b, head, at_x, at_y, off, given, length, limb[LIMB_HEAD_SPOT:])
+    tail, head = curves.integers[number, TAIL], curves.integers[number, HEAD]
+    there, ahead = write_piece_spots(
+        piece, limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT], limb[LIMB_HEAD_SPOT:], features, curves, length
+    )
+    first, end = spots_of(features.loose[tail], tail, near, there[0], there[1], there[2])
+    begin, last = spots_of(features.loose[head], head, near, ahead[0], ahead[1], ahead[2])
     limb[LIMB_TAIL_FIRST], limb[LIMB_TAIL_END] = first, end
     limb[LIMB_HEAD_FIRST], limb[LIMB_HEAD_END] = begin, last
     return is_any_joined(near, first, end, begin, last)

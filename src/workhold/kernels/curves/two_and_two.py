@@ -11,13 +11,13 @@ against each other along x. The difference of their heights must be able to be a
 
 from __future__ import annotations
 
-from math import ceil, cos, floor, inf, sin
+from math import ceil, cos, floor, sin
 
 import numpy as np
 
 from workhold.conventions import GAP_SLACK, LEAST_CLAMPING
 from workhold.kernels.base.arrays import sort_rows
-from workhold.kernels.base.compiling import Array, IntVector, Vector, compiled, inner
+from workhold.kernels.base.compiling import Array, IntArray, IntVector, Vector, compiled, inner
 from workhold.kernels.base.tables import (
     ACROSS_LEAST,
     ACROSS_MOST,
@@ -26,10 +26,8 @@ from workhold.kernels.base.tables import (
     HEAD,
     HIGH,
     LEFTWARD_LOW,
-    LENGTH,
     LOW,
     RIGHTWARD_LOW,
-    SHIFT,
     STEADY,
     TAIL,
     VALUE_LEAST,
@@ -50,7 +48,6 @@ from workhold.kernels.contact.location_bounds import (
     least_error_of_four,
     most_allowed,
     swing_within,
-    write_spot,
 )
 from workhold.kernels.contact.record import angle_of, write_given_up
 from workhold.kernels.curves.block_work import (
@@ -64,9 +61,11 @@ from workhold.kernels.curves.block_work import (
     add_listed,
     block_work,
     is_among,
+    limits_errors,
     place_chord,
 )
-from workhold.kernels.curves.piece_bounds import HAIR, clear_edges, tail_disc
+from workhold.kernels.curves.near_spots import write_piece_spots
+from workhold.kernels.curves.piece_bounds import HAIR, clear_edges
 from workhold.kernels.curves.pieces import write_pieces
 from workhold.kernels.curves.roots import MULTIPLE, ROOT_PSI, ROOT_RADIUS, crossings, may_meet
 
@@ -81,15 +80,16 @@ ROLE_TAIL_SPOT, ROLE_HEAD_SPOT = 10, 10 + CONTACT_LENGTH
 @inner
 def write_roles(
     pieces: Array,
+    integers: IntArray,
     touched: tuple[int, int],
     x_column: int,
     force_column: int,
-    work: BlockWork,
+    counting: bool,
     out: Array,
 ) -> int:
-    """Writes the (N, 20) roles of the pieces that may be on one carrier, and returns their number."""
-    count, integers, counting = int(np.int64(0)), work.curves.integers, work.counting
-    asks_errors = limits_errors(work)
+    """Writes the (N, 20) roles of the pieces that may be on one carrier, but for what ``write_role_spots`` does, and
+    returns their number."""
+    count = int(np.int64(0))
     for k in range(pieces.shape[0]):
         row = pieces[k]
         if row[force_column] > row[force_column + 1] and not counting:
@@ -101,33 +101,22 @@ def write_roles(
         role[ROLE_FORCE_HIGH] = row[force_column + 1]
         role[ROLE_VALUE_LEAST], role[ROLE_VALUE_MOST] = row[VALUE_LEAST], row[VALUE_MOST]
         role[ROLE_LOW], role[ROLE_HIGH], role[ROLE_PIECE] = row[LOW], row[HIGH], k
-        if asks_errors:
-            write_role_spots(role, row, work)
         count += 1
     return count
 
 
 @inner
-def limits_errors(work: BlockWork) -> bool:
-    """Whether only fixtures up to some location error are of interest."""
-    return not work.counting and work.features.precision.most < inf
-
-
-@inner
-def write_role_spots(role: Array, piece: Array, work: BlockWork) -> None:
-    """Writes the spots that both pegs of a piece may touch, and how far their normals may be off."""
-    number, features, length = int(piece[CURVE]), work.features, work.limits.wrench_length
-    curve = work.curves.reals[number]
-    tail, head = work.curves.integers[number, TAIL], work.curves.integers[number, HEAD]
-    a, b = features.loose[tail], features.loose[head]
-    psi, half = (piece[LOW] + piece[HIGH]) / 2.0, (piece[HIGH] - piece[LOW]) / 2.0
-    x, y, radius = tail_disc(a, b, curve, psi, half)
-    alpha, d = psi + curve[SHIFT], curve[LENGTH]
-    off = radius + d * half
-    given = features.precision
-    write_spot(a, tail, x, y, radius, given, length, role[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT])
-    write_spot(b, head, x + d * cos(alpha), y + d * sin(alpha), off, given, length, role[ROLE_HEAD_SPOT:])
-    role[ROLE_TAIL_SWING], role[ROLE_HEAD_SWING] = swing_within(a, radius), swing_within(b, off)
+def write_role_spots(roles: Array, pieces: Array, work: BlockWork) -> None:
+    """Writes to (N, 20) roles the spots that both pegs may touch, and how far their normals may be off."""
+    loose, curves, length = work.features.loose, work.curves, work.limits.wrench_length
+    for k in range(roles.shape[0]):
+        role = roles[k]
+        piece = pieces[int(role[ROLE_PIECE])]
+        number = int(piece[CURVE])
+        tail_spot, head_spot = role[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT], role[ROLE_HEAD_SPOT:]
+        tail, head = write_piece_spots(piece, tail_spot, head_spot, work.features, curves, length)
+        role[ROLE_TAIL_SWING] = swing_within(loose[curves.integers[number, TAIL]], tail[2])
+        role[ROLE_HEAD_SWING] = swing_within(loose[curves.integers[number, HEAD]], head[2])
 
 
 @inner
@@ -321,9 +310,16 @@ def two_and_two_cells(
         )
         if number < 0:
             return NO_ROOM_FOR_PIECES
-        pieces = space.pieces[:number]
-        standing = write_roles(pieces, features.standing, X_STANDING, standing_force, work, space.standing)
-        moving = write_roles(pieces, features.moving, X_MOVING, moving_force, work, space.unordered)
+        pieces, integers = space.pieces[:number], curves.integers
+        standing = write_roles(
+            pieces, integers, features.standing, X_STANDING, standing_force, counting, space.standing
+        )
+        moving = write_roles(
+            pieces, integers, features.moving, X_MOVING, moving_force, counting, space.unordered
+        )
+        if limits_errors(work):
+            write_role_spots(space.standing[:standing], pieces, work)
+            write_role_spots(space.unordered[:moving], pieces, work)
         # The rightmost first.
         sort_rows(
             space.unordered[:moving],
