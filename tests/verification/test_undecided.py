@@ -10,7 +10,7 @@ import pytest
 
 from judged import faults_of
 from undecided_examples import as_undecided
-from workhold import Fixture, OpeningVise, Query, Result, Vise, Workpiece
+from workhold import Fixture, OpeningVise, Query, Result, StrapPlate, Vise, Workpiece, design
 from workhold.model.notes import LeftUndecided
 from workhold.model.search_report import GIVEN_UP, NEARLY_DOUBLE, UNBOUNDED, Undecided
 from workhold.verification import verify
@@ -142,3 +142,23 @@ def test_pegs_at_both_ends_may_miss_by_what_they_move_against_each_other(farther
     faces, rows = (bottom, top, flat, flat), (0, 3, 1, 2)
     entry = Undecided("I", faces, (0, 0, 0, 0), rows, 0.0, NEARLY_DOUBLE, degrees(1e-3))
     assert (faults_of([entry], query) == []) == real
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({}, ""),
+        ({"faces": (0, 1)}, "has not 3 faces and holes"),
+        ({"rows": (0, 0, 0, 0)}, "has not 3 faces and holes"),
+        ({"reason": GIVEN_UP}, "has not 4 faces and holes"),
+        ({"columns": (1, 1, 1)}, "does not count its holes from the first peg"),
+        ({"theta_deg": 17.0}, "is no place where its pegs touch their faces"),
+    ],
+)
+def test_three_locators_alone_are_looked_at_likewise(changes: dict[str, Any], words: str) -> None:
+    """Under straps nothing moves, so that an entry has three pegs; of two chords it has the ends of both."""
+    part = Workpiece.from_loops("block", [[[0, 0, 0], [100, 0, 0], [100, 60, 0], [0, 60, 0]]])
+    result = design(part, StrapPlate(20, 3, 8, 6), best=1)
+    entry = attrs.evolve(as_undecided(result[0]), **changes)
+    found = faults_of([entry], result.query)
+    assert words in found[0] if words else found == []

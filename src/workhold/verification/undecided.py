@@ -43,9 +43,6 @@ from workhold.verification.touching import find_points_on_circle, find_points_on
 
 __all__ = ["find_undecided_faults"]
 
-# Pegs of an entry of one clamp, or of two chords.
-PEGS = 4
-
 # mm. Features end so much farther out while contacts are sought; contacts are off by their errors.
 LOOSE = 10 * AGREEMENT
 # No unit. Lines with a sine less than this between them may be taken for parallel, and the others cross where
@@ -95,12 +92,7 @@ def find_entry_fault(entry: Undecided, query: Query, outline: BallOutline) -> st
     """Return what is wrong with an entry of four contacts or two chords; empty when nothing is."""
     fault = find_written_fault(entry, query, outline)
     if WALL_END not in query.toolkit.contacts:
-        count = sum(find_arrangement(entry, query).pegs) if not fault else PEGS
-        if not fault and {len(entry.faces), len(entry.columns), len(entry.rows)} != {count}:
-            return f"has not {count} faces and holes"
-        if count != PEGS:
-            # Of three locators alone nothing else is known that a glance could refute.
-            return fault
+        fault = fault or find_count_fault(entry, query)
         fault = fault or find_holes_fault(entry, query) or place_fault(entry, query, outline)
     return fault
 
@@ -161,8 +153,8 @@ def turn_entry_along_x(entry: Undecided, query: Query) -> tuple[Undecided, list[
 
 def group_pegs(entry: Undecided, query: Query) -> list[list[int]]:
     """Return the numbers of pegs whose steps from the first of them are given."""
-    first = 2 if is_of_chords(entry) else find_arrangement(entry, query).pegs[0]
-    return [list(range(first)), list(range(first, 4))]
+    first, count = 2 if is_of_chords(entry) else find_arrangement(entry, query).pegs[0], len(entry.faces)
+    return [group for group in (list(range(first)), list(range(first, count))) if group]
 
 
 def find_written_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
@@ -176,6 +168,13 @@ def find_written_fault(entry: Undecided, query: Query, outline: BallOutline) -> 
     if not set(entry.faces) <= set(outline.faces):
         return "names a segment that is no face"
     return ""
+
+
+def find_count_fault(entry: Undecided, query: Query) -> str:
+    """Return that an entry has not as many faces and holes as pegs; empty when it has."""
+    count = 4 if is_of_chords(entry) else sum(find_arrangement(entry, query).pegs)
+    numbers = (entry.faces, entry.columns, entry.rows)
+    return "" if all(len(one) == count for one in numbers) else f"has not {count} faces and holes"
 
 
 def find_holes_fault(entry: Undecided, query: Query) -> str:
@@ -224,9 +223,10 @@ def place_fault(entry: Undecided, query: Query, outline: BallOutline) -> str:
     held = [find_first_peg_places(group) if len(group) > 1 else None for group in pegs]
     if any(places is not None and not places for places in held):
         return "is no place where its pegs touch their faces"
-    standing, moving = held
-    if is_of_chords(entry) or standing is None:
+    standing = held[0]
+    if is_of_chords(entry) or len(held) == 1 or standing is None:
         return ""
+    moving = held[1]
     first, second = (carriers[group[0]] for group in groups)
     up = arb(second.pitch[1]) * entry.rows[groups[1][0]] + second.offset[1] - first.offset[1]
     reach = arb(max(peg.column for peg in pegs[0])) - min(peg.column for peg in pegs[1])
