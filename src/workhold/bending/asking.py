@@ -8,7 +8,7 @@ error that is told.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from threading import Event
 
 import numpy as np
@@ -23,9 +23,10 @@ from workhold.bending.meshing import Surface, make_mesh, refine_mesh
 from workhold.bending.patches import BESIDE, LoadPatch, make_disc, make_foot
 from workhold.bending.places import CutterLoads, list_cutter_loads
 from workhold.bending.shape import PartToBend
+from workhold.contact.problem import Progress
 from workhold.conventions import STATED_FORCE
 from workhold.errors import InputError
-from workhold.geometry.segment import Arc, Segment
+from workhold.geometry.segment import Segment, measure_distance_to_segment
 from workhold.model.fixture import Fixture
 from workhold.model.query import Query
 from workhold.model.result import Result
@@ -35,7 +36,6 @@ __all__ = ["BendingQuestion", "find_bendings"]
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
-Progress = Callable[[float, int], None]
 # Radius of what a tool or a load presses on, in mm: its dent is not counted, so that it matters little.
 CUTTER_RADIUS = 2.0
 # The error that is told, of the change from the mesh to the refined one: at a dent, which is read near by, the change
@@ -414,12 +414,5 @@ def find_cut_nodes(surface: Surface, faces: Sequence[int | str], workpiece: Work
 
 
 def measure_distances(segment: Segment, points: Array) -> Array:
-    """The distances (N,) of points (N, 2) from a segment, in mm; far where an arc does not reach."""
-    if isinstance(segment, Arc):
-        away = points - np.array(segment.center)
-        off = np.abs((np.arctan2(away[:, 1], away[:, 0]) - segment.mid_angle + np.pi) % (2 * np.pi) - np.pi)
-        beyond = np.maximum(off - segment.half_sweep, 0.0) * segment.radius
-        return np.asarray(np.hypot(np.hypot(*away.T) - segment.radius, beyond))
-    start, end = np.array(segment.start), np.array(segment.end)
-    share = np.clip((points - start) @ (end - start) / ((end - start) @ (end - start)), 0.0, 1.0)
-    return np.asarray(np.linalg.norm(points - start - share[:, None] * (end - start), axis=1))
+    """Return the distances (N,) of points (N, 2) from a segment, in mm."""
+    return np.array([measure_distance_to_segment((x, y), segment) for x, y in points.tolist()])

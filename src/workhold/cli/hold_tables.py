@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from workhold.cli.need_table import tabulate_needs
 from workhold.cli.strap_tables import first_strap_sentence, strap_table, strapped_fixture_tables
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_figure_number, format_rounded, make_short_heading
@@ -91,9 +92,9 @@ def hold_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit) -> 
     if hold.program_need is not None and query.program is not None:
         tables.append(asked_words(hold.program_need, query.program, unit))
     if hold.clamp_needed_each:
-        needs = Table((">load", "name", f">jaw force needed {unit.force}"))
-        for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
-            text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
-            needs.add_row(str(number), load.name, text)
-        tables.append(needs)
+        tables.append(
+            tabulate_needs(
+                (load.name for load in query.loads), hold.clamp_needed_each, "jaw force needed", unit
+            )
+        )
     return (*tables, *write_warnings(hold))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from workhold.cli.need_table import tabulate_needs
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_rounded
 from workhold.units import Unit
@@ -101,10 +102,9 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
             straps.add_row(str(number), where, *(unit.number(value) for value in (*one.at, one.height)))
         tables += ["", straps]
     if hold.clamp_needed_each:
-        needs = Table((">load", "name", f">force of each strap {unit.force}"))
-        for number, (load, need) in enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1):
-            text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
-            needs.add_row(str(number), load.name, text)
+        needs = tabulate_needs(
+            (load.name for load in query.loads), hold.clamp_needed_each, "force of each strap", unit
+        )
         tables += ["", reckoned_with(asked), needs]
     quality = fixture.quality
     error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))

@@ -161,7 +161,7 @@ def tabulate(
     found: StrappedHold, fixture: Fixture, rank: int, asked: StrapQuestion, unit: Unit
 ) -> list[Table | str]:
     """Say how to set the straps up, and what each load asks for."""
-    from workhold.presenting.figure_words import format_rounded
+    from workhold.cli.need_table import tabulate_needs
     from workhold.supports.words_of_straps import list_steps, reckoned_with
 
     short = unit.abbreviation
@@ -174,9 +174,8 @@ def tabulate(
             table.add_row(str(number), plate.place_name(*one.hole), *(unit.number(value) for value in one.at))
         out += ["", table]
     if found.clamp_needed_each:
-        needs = Table((">load", "name", f">force of each strap {unit.force}"))
-        for number, (load, need) in enumerate(zip(asked.loads, found.clamp_needed_each, strict=True), 1):
-            text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
-            needs.add_row(str(number), load.name, text)
+        needs = tabulate_needs(
+            (load.name for load in asked.loads), found.clamp_needed_each, "force of each strap", unit
+        )
         out += ["", reckoned_with(asked), needs]
     return out

@@ -39,6 +39,7 @@ from workhold.model.fixture_table import FixtureTable
 from workhold.model.quality import (
     CLAMP_FREEDOM,
     CLOSURE_MARGIN,
+    COARSE_DIGITS,
     FIGURES,
     PROGRAM_CLEARANCE,
     PROGRAM_FIGURE,
@@ -73,7 +74,6 @@ Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 BoolArray = NDArray[np.bool_]
 
-COARSE_DIGITS = 2
 # Effective errors are whole billionths of a millimetre, no more than an integer holds eleven times.
 PER_MM, MOST_ERROR = 10.0**FIGURE_DECIMALS, 4 * 10**17
 # A location error so many times another, and more than rounding takes, is a step above it for certain.

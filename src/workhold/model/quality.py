@@ -34,6 +34,7 @@ __all__ = [
     "PAIR_FIGURES",
     "PAIR_RANKING",
     "BEFORE_PINS",
+    "COARSE_DIGITS",
     "PENALTY",
     "PIN_DEFLECTION",
     "PIN_FIGURES",
@@ -55,6 +56,7 @@ __all__ = [
     "resolve_ranking",
     "select_figure_column",
     "find_figure_number",
+    "round_number_coarsely",
     "list_figures_in_columns",
     "adapt_ranking_to_loads",
     "list_known_figures",
@@ -64,6 +66,8 @@ __all__ = [
     "words",
 ]
 
+# Digits of figures that others come after in an order.
+COARSE_DIGITS = 2
 T = TypeVar("T")
 # The loads, or whether there are any.
 Loaded = Sequence[Load] | bool
@@ -252,6 +256,11 @@ PROGRAM_FIGURE = Figure(
 PROGRAM_CLEARANCE = -1
 # All figures that fixtures can be ranked by.
 RANKED = (*FIGURES, *SEATING_FIGURES, PROGRAM_FIGURE)
+
+
+def round_number_coarsely(value: float) -> float:
+    """Return a number to two significant digits, as it is written; what is no number as it is."""
+    return float(f"{value:.{COARSE_DIGITS - 1}e}")
 
 
 def list_figures_in_columns(columns: int) -> tuple[Figure, ...]:

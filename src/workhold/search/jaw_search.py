@@ -35,6 +35,7 @@ from workhold.model.friction import find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
 from workhold.model.notes import NoFixture, Note, Remark, Stage
 from workhold.model.program import Program
+from workhold.model.quality import round_number_coarsely
 from workhold.model.query import Query
 from workhold.model.requirements import Load, lie_in_angle_ranges
 from workhold.model.result import Result
@@ -68,8 +69,6 @@ STAGE_OF: dict[str, Stage] = {"angles": "shape", "grip": "pair", "push": "set"}
 NEARLY_PARALLEL = 1e-6
 # Two heights of one thickness where nobody says how thick the part is, in mm.
 UNKNOWN_BAND = (0.0, 1.0)
-# Digits of figures that others come after in an order.
-COARSE_DIGITS = 2
 # How far outward in mm jaws are taken to reach whose thickness is not given.
 JAW_DEPTH = 1e4
 # How far in mm what both jaws touch may miss each other by rounding.
@@ -560,11 +559,6 @@ def is_square(theta: float) -> bool:
     return abs((degrees(theta) + 45.0) % 90.0 - 45.0) < SQUARE_TILT
 
 
-def coarse(value: float) -> float:
-    """A number to two significant digits."""
-    return float(f"{value:.{COARSE_DIGITS - 1}e}")
-
-
 def order_of(one: Examined, query: Query) -> tuple[float, ...]:
     """What fixtures are put in order by: smaller comes first."""
     hold = one.hold
@@ -580,12 +574,12 @@ def order_of(one: Examined, query: Query) -> tuple[float, ...]:
                     if not query.is_loaded
                     else inf
                     if hold.clamp_needed is None
-                    else coarse(hold.clamp_needed)
+                    else round_number_coarsely(hold.clamp_needed)
                 )
             case "contact_area":
-                key.append(-coarse(hold.contact_area))
+                key.append(-round_number_coarsely(hold.contact_area))
             case "max_pressure":
-                key.append(inf if hold.max_pressure is None else coarse(hold.max_pressure))
+                key.append(inf if hold.max_pressure is None else round_number_coarsely(hold.max_pressure))
             case _:
                 value = getattr(hold, name)
                 key.append(inf if value is None else -round(value, 6))

@@ -22,7 +22,14 @@ from workhold.geometry.symmetry import rotate_vectors
 from workhold.listing.results import make_stage_progress
 from workhold.model.fixture_table import FixtureTable
 from workhold.model.notes import LeftUndecided, NoFixture, NoPlace, Note, Remark, Stage
-from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, LOCATION_ERROR, SMALLEST_FACE, TILT
+from workhold.model.quality import (
+    EDGE_DISTANCE,
+    END_DISTANCE,
+    LOCATION_ERROR,
+    SMALLEST_FACE,
+    TILT,
+    round_number_coarsely,
+)
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.straps import USUAL_SEATS, HandPush, Strap, StrappedHold
@@ -36,8 +43,6 @@ IntArray = NDArray[np.int64]
 
 # The share of the work, as progress reports it, that finds the seats.
 SEATS = 0.2
-# Digits of figures that others come after in an order.
-COARSE_DIGITS = 2
 # Columns of the figures that seats are ranked by; more is better of those after the first two.
 COLUMNS = {
     "square": TILT,
@@ -189,13 +194,8 @@ def seat_key(table: FixtureTable, name: str) -> Array:
     values = table.quality[:, COLUMNS[name]]
     if name == "square":
         return np.asarray(values >= SQUARE_TILT, np.float64)
-    rounded = np.array([coarse(one) for one in values.tolist()])
+    rounded = np.array([round_number_coarsely(one) for one in values.tolist()])
     return rounded if name in LESS_IS_BETTER else -rounded
-
-
-def coarse(value: float) -> float:
-    """A number to two significant digits; what is not known as it is."""
-    return float(f"{value:.{COARSE_DIGITS - 1}e}")
 
 
 def strapped_holds(
@@ -240,7 +240,7 @@ def final_order(holds: Sequence[StrappedHold], table: FixtureTable, query: Query
         for name in query.rank_by:
             if name == "clamp_needed":
                 need = hold.clamp_needed
-                numbers.append(0.0 if need is None else coarse(need))
+                numbers.append(0.0 if need is None else round_number_coarsely(need))
             elif name in COLUMNS:
                 numbers.append(float(seat_key(table.take(slice(place, place + 1)), name)[0]))
         return (0.0, float(hold.is_beyond_rating), *numbers)
