@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import workhold
+from polygon_seats import polygon_seats
 from slow_seats import faces_of, slow_seats
 from strap_program import force_by_other_program
 from workhold import InputError, Load, Plate, Query, Restrictions, StrapPlate, Workpiece, circle_zone
@@ -74,6 +75,61 @@ def test_seats_are_those_of_a_slow_enumeration(part, pitch, size):
             point = np.array(pose.inverse.apply(*map(float, plate.place(column, row))))
             assert abs(faces[face].gap(point[None])[0]) < 1e-7 and faces[face].has(point) >= 0
     assert len(ours) > 20
+
+
+WINDOW = Workpiece.from_loops(
+    "window",
+    [
+        [[0, 0, 0], [71, 0, 0], [71, 54, 0], [0, 54, 0]],
+        [[10, 10, 0], [10, 44, 0], [59, 42, 0], [61, 10, 0]],
+    ],
+)
+SLOTTED = Workpiece.from_points(
+    "slotted", [(0, 0), (70, 0), (70, 40), (50, 40), (50, 14), (20, 14), (20, 40), (0, 40)]
+)
+KITE = Workpiece.from_points("kite", [(0, 0), (56, 6), (48, 44), (10, 37)])
+# The part, the locators' radius, pitch, columns and rows, and how many seats are known to be there.
+COUNTED = (
+    (BLOCK, 3.0, (20, 20), (8, 6), 4072),
+    (ELL, 3.0, (20, 20), (8, 6), 1036),
+    (WINDOW, 2.5, (20, 16), (4, 5), None),
+    (SLOTTED, 4.0, (20, 20), (5, 5), None),
+    (KITE, 3.0, (16, 16), (5, 5), None),
+)
+
+
+@pytest.mark.parametrize(
+    ("part", "radius", "pitch", "holes", "count"), COUNTED, ids=[one[0].name for one in COUNTED]
+)
+def test_seats_of_straight_sides_are_those_of_closed_forms(part, radius, pitch, holes, count):
+    """One by one: each whose locators are inside their sides and that is no double root, and nothing else."""
+    table = find_seats(
+        Query(part, StrapPlate(pitch, radius, *holes, bolt_pitch=pitch, bolt_offset=(3, 0)))
+    ).table
+    ours = dict[tuple, list[float]]()
+    for k in range(len(table)):
+        contacts = zip(*(one[k].tolist() for one in (table.column, table.row, table.face)), strict=True)
+        ours.setdefault(tuple(sorted(contacts)), []).append(np.degrees(table.theta[k]))
+    theirs = list(polygon_seats(part, radius, pitch, *holes))
+    matched = 0
+    for one in theirs:
+        off = [abs((angle - one.theta + 180) % 360 - 180) for angle in ours.get(one.contacts, [])]
+        is_listed = min(off, default=360) < 1e-4
+        if one.room > 1e-6 and one.determinant > 1e-5:
+            assert is_listed, one
+        elif one.room < 1e-7 or one.determinant < 1e-7:
+            assert not is_listed, one
+        matched += is_listed
+    assert matched == len(table) == (count or len(table)) > 100
+
+
+def test_a_locator_in_an_inner_corner_makes_no_seat():
+    """It touches two sides there, four contacts of three locators: eight poses of the L, which are left out."""
+    at_ends = [one for one in polygon_seats(ELL, 3.0, (20, 20), 8, 6) if one.room < 1e-6]
+    assert len(at_ends) == 16
+    assert len({(tuple(hole[:2] for hole in one.contacts), round(one.theta, 3)) for one in at_ends}) == 8
+    for one in at_ends:
+        assert np.hypot(*(one.points - (27, 25)).T).min() < 1e-9
 
 
 @pytest.mark.parametrize(("wide", "high", "pitch"), [(100, 60, 20), (62, 33, 10), (47, 31, 15)])
