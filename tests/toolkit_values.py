@@ -38,9 +38,10 @@ VALUES: dict[str, tuple[Any, Any]] = {
     "stop_offset": (-1.25, "-1.25"),
     "max_force": (5200.0, "5200"),
     "screw_lead": (5.0, "5"),
-    "straps": (4, "4"),
+    "straps": (3, "3"),
     "tip_radius": (6.5, "6.5"),
     "reach": ((22.0, 43.0), "22,43"),
+    "over": ("supports", "supports"),
     "bolt_pitch": ((8.0, 9.0), "8,9"),
     "bolt_offset": ((3.25, 1.75), "3.25,1.75"),
 }

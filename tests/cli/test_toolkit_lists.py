@@ -46,6 +46,7 @@ def test_every_number_of_every_kind_can_be_varied() -> None:
         "directions",
         "parallels",
         "stop",
+        "over",
         "max_force",
         *heights,
     }

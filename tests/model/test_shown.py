@@ -12,7 +12,8 @@ from attrs import evolve, frozen
 from hypothesis import given
 from hypothesis import strategies as st
 
-from workhold import Fixture, OpeningVise, Peg, Pose, Vise, Workpiece
+import workhold
+from workhold import Fixture, Load, OpeningVise, Peg, Pose, StrapPlate, Vise, Workpiece
 from workhold.errors import InputError
 from workhold.fixels.carrier import Holes
 from workhold.fixels.toolkit import Arrangement, Carrier, Symmetry, Toolkit, Travel
@@ -229,3 +230,16 @@ def test_a_pose_takes_arrays_of_points() -> None:
         pose.apply([("1", 2)])
     with pytest.raises(InputError, match="theta deg cannot be '33'"):
         Pose("33", 0, 0)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("over", ["plate", "supports"])
+def test_bolts_of_straps_and_supports_show(over: str) -> None:
+    """Also those that stand beyond locators and part."""
+    plate = StrapPlate(20, 3, over=over, reach=(55, 60))
+    block = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
+    load = Load(points=(50, 30), force=300, directions=20)
+    fixture = workhold.design(block, plate, loads=[load], thickness=25, strapped=1, best=1)[0]
+    (seen,) = shown(fixture, plate, block).carriers
+    holes = {one.hole for one in fixture.hold.straps} | set(fixture.hold.supports)
+    assert holes and holes < seen.used
+    assert holes <= {(column, row) for column in seen.columns for row in seen.rows}

@@ -16,6 +16,7 @@ from workhold import InputError, Load, Plate, Query, Restrictions, StrapPlate, W
 from workhold.model.pose import Pose
 from workhold.search.seat_search import find_seats
 from workhold.supports.straps import StrapSearch, question_of
+from workhold.supports.straps_over_supports import PadPlaces, StrappedTriple, SupportedStraps
 
 BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
 TRIANGLE = Workpiece.from_points("triangle", [(0, 0), (61, 0), (20, 47)])
@@ -248,6 +249,53 @@ def test_a_plate_without_ends_has_no_hole_below_its_first():
         assert fixture.contact_points.shape == (3, 2)
 
 
+@pytest.mark.parametrize(("count", "pitch"), [(1, 20), (2, 20), (3, 20)])
+def test_straps_over_supports_need_the_least_force_of_all_sets(count, pitch):
+    """Every three holes under the part, with every choice of those under straps, is asked for its force."""
+    plate = StrapPlate(pitch, 3, 8, 6, straps=count, over="supports", supports={"height": 10})
+    loads = [LOAD, Load(points=(20, 20), force=120, directions=(0, 60), moment=900, height=20)]
+    result = workhold.design(BLOCK, plate, loads=loads, thickness=25, strapped=2, best=2)
+    for fixture in result:
+        search = StrapSearch(fixture, result.query, question_of(result.query))
+        found = SupportedStraps(search, PadPlaces.of(search))
+        pads, strapped = found.list_sets()
+        needs = [
+            max(need)
+            for some, number in zip(pads.tolist(), strapped.tolist(), strict=True)
+            if found.stands(np.array([some]))[0]
+            and None not in (need := found.needs(StrappedTriple(tuple(some), found.combinations[number])))
+        ]
+        hold = fixture.hold
+        assert len(needs) > 10 and hold.clamp_needed == pytest.approx(min(needs), rel=1e-9)
+        assert len(hold.supports) == 3 and len({one.hole for one in hold.straps}) == count
+        for one in hold.straps:
+            assert one.over in hold.supports and one.height == 35
+            assert one.at == plate.plates[0].place(*one.over)
+
+
+def test_friction_of_supports_counts_under_straps_and_that_of_the_plate_does_not():
+    def need(**friction):
+        plate = StrapPlate(20, 3, 8, 6, over="supports")
+        asked = {"loads": [LOAD], "thickness": 25, "strapped": 1, "best": 1, "friction": friction}
+        return workhold.design(BLOCK, plate, **asked)[0].hold.clamp_needed
+
+    assert need(plate=0.3) == need() > need(support=0.3)
+
+
+def test_a_plate_without_ends_has_its_supports_in_holes_with_names():
+    plate = StrapPlate(20, 3, over="supports")
+    for fixture in workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=4, best=4):
+        assert min(min(hole) for hole in fixture.hold.supports) >= 0
+        assert {one.over for one in fixture.hold.straps} <= set(fixture.hold.supports)
+
+
+def test_pads_that_find_no_three_holes_leave_no_straps():
+    plate = StrapPlate(20, 3, 8, 6, over="supports", supports={"pad_radius": 9, "pad_margin": 15})
+    result = workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=1, best=3000)
+    (hold,) = (one for one in result.holds if one.is_looked_at)
+    assert hold.straps == () and hold.holds_nothing and hold.places < 3
+
+
 def test_bolts_stand_in_holes_of_their_own():
     plate = StrapPlate(20, 3, 8, 6, bolt_pitch=20, bolt_offset=10)
     result = workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=1, best=1)
@@ -297,6 +345,8 @@ def test_what_is_not_done_is_refused_in_a_sentence(asked, words):
         ({"bolt_pitch": 15}, "do not repeat with dowel holes"),
         ({"bolt_offset": 5}, "bolts have no holes of their own"),
         ({"bolt_pitch": 10, "bolt_offset": 12}, "less than the bolts' pitch"),
+        ({"straps": 4, "over": "supports"}, "4 straps do not find a support each"),
+        ({"over": "air"}, "plate"),
         ({"tip_radius": 0}, "tip radius 0.0 is not a positive length"),
     ],
 )

@@ -18,6 +18,7 @@ LOADS = (
     Load(points=(40, 25), force=50, directions=90, upward=60),
 )
 PLATE = StrapPlate(20, 3, 8, 6)
+RAISED = StrapPlate(20, 3, 8, 6, straps=2, over="supports", supports={"pad_radius": 5, "height": 12})
 
 
 @pytest.mark.parametrize(
@@ -28,8 +29,20 @@ PLATE = StrapPlate(20, 3, 8, 6)
         (BLOCK, StrapPlate(20, 3, 8, 6, bolt_pitch=10, bolt_offset=5, straps=3), {"friction": {"tip": 0.2}}),
         (ROUNDED, PLATE, {"safety": 1.5}),
         (BLOCK, PLATE, {"restrictions": Restrictions(zones=(circle_zone(50, 30, 14),), avoid=(1,))}),
+        (BLOCK, RAISED, {"weight": 12.0}),
+        (ROUNDED, RAISED, {"friction": {"support": 0.2}}),
+        (BLOCK, StrapPlate(20, 3, straps=1, over="supports", bolt_pitch=10, bolt_offset=5), {}),
     ],
-    ids=["block", "one strap", "own bolts", "rounded", "zone"],
+    ids=[
+        "block",
+        "one strap",
+        "own bolts",
+        "rounded",
+        "zone",
+        "raised",
+        "rounded raised",
+        "raised, one strap",
+    ],
 )
 def test_every_seat_is_proven(part, plate, asked):
     result = workhold.design(part, plate, loads=LOADS, thickness=25, strapped=2, best=60, **asked)
@@ -112,6 +125,70 @@ def overlap_tips(fixture):
 )
 def test_a_fault_in_a_file_is_seen(written, tmp_path, fault):
     data = json.loads(written.read_text())
+    fault(data["fixtures"][0])
+    path = tmp_path / "faulty.json"
+    path.write_text(json.dumps(data))
+    outcome = verify_file(path)
+    assert not outcome.holds and [one.index for one in outcome.unproven] == [0], outcome
+
+
+@pytest.fixture(scope="module")
+def raised(tmp_path_factory):
+    result = workhold.design(BLOCK, RAISED, loads=LOADS, thickness=25, strapped=2, best=6)
+    path = tmp_path_factory.mktemp("raised") / "block.json"
+    workhold.save(result, path)
+    return path
+
+
+def move_support(fixture):
+    """Under the part's border."""
+    fixture["supports"][spare_support(fixture)] = [fixture["pegs"][0]["column"], fixture["pegs"][0]["row"]]
+
+
+def line_supports_up(fixture):
+    fixture["supports"][2] = [2 * b - a for a, b in zip(*fixture["supports"][:2], strict=True)]
+
+
+def lie_on_two(fixture):
+    del fixture["supports"][spare_support(fixture)]
+
+
+def lie_on_the_plate(fixture):
+    fixture["supports"] = []
+    for strap in fixture["straps"]:
+        strap["over"] = "plate"
+
+
+def press_beside_support(fixture):
+    fixture["straps"][0]["at"][0] += 5.1
+
+
+def lower_heel_to_part(fixture):
+    for strap in fixture["straps"]:
+        strap["heel"] -= 12.0
+
+
+def spare_support(fixture):
+    over = [strap["over"] for strap in fixture["straps"]]
+    return next(k for k, one in enumerate(fixture["supports"]) if one not in over)
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        move_support,
+        line_supports_up,
+        lie_on_two,
+        lie_on_the_plate,
+        press_beside_support,
+        lower_heel_to_part,
+        need_less,
+        share_hole,
+    ],
+    ids=lambda fault: fault.__name__,
+)
+def test_a_fault_over_supports_is_seen(raised, tmp_path, fault):
+    data = json.loads(raised.read_text())
     fault(data["fixtures"][0])
     path = tmp_path / "faulty.json"
     path.write_text(json.dumps(data))

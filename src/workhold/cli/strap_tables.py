@@ -78,7 +78,7 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
     """Say how to set up one seat with its straps, with lengths in a unit, and what each load asks for."""
     from workhold.model.straps import StrappedHold
     from workhold.supports.straps import question_of
-    from workhold.supports.words_of_straps import list_steps, list_warnings, reckoned_with
+    from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings, reckoned_with
 
     hold, query = fixture.hold, fixture.listing.result.query
     assert isinstance(hold, StrappedHold)
@@ -90,6 +90,7 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
     tables: list[Table | str] = [
         f"Fixture {rank} of {total}: part turned by {angle} degrees",
         *(f"{step}." for step in list_steps(hold, fixture, asked, unit)),
+        *list_remarks(hold),
         "",
         pegs,
     ]
@@ -109,5 +110,5 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
     quality = fixture.quality
     error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))
     tables.append(f"Location error {error}; nearest edge {edge}.")
-    said = list_warnings(hold, asked, unit)
+    said = list_warnings(hold, fixture, asked, unit)
     return (*tables, *(f"{words[:1].upper()}{words[1:]}" for words in said))

@@ -96,7 +96,7 @@ def straps(
         print_json(rank=rank, **describe(found, fixture, asked))
     else:
         print_tables(*tabulate(found, fixture, rank, asked, printed))
-    for said in list_warnings(found, asked, printed):
+    for said in list_warnings(found, fixture, asked, printed):
         print_remark(said)
     if cancel.is_set():
         raise typer.Exit(INTERRUPTED)
@@ -162,11 +162,11 @@ def tabulate(
 ) -> list[Table | str]:
     """Say how to set the straps up, and what each load asks for."""
     from workhold.cli.need_table import tabulate_needs
-    from workhold.supports.words_of_straps import list_steps, reckoned_with
+    from workhold.supports.words_of_straps import list_remarks, list_steps, reckoned_with
 
     short = unit.abbreviation
     out: list[Table | str] = [f"Straps over the locators of fixture {rank}", ""]
-    out += [f"{step}." for step in list_steps(found, fixture, asked, unit)]
+    out += [f"{step}." for step in list_steps(found, fixture, asked, unit)] + list_remarks(found)
     if found.straps:
         table = Table(("strap", "bolt in", f">tip at x {short}", f">tip at y {short}"))
         plate = asked.bolts(fixture)

@@ -19,5 +19,5 @@ def list_hold_cautions(fixture: Fixture) -> list[tuple[str, str]]:
         return hold_cautions(hold)
     assert hold is not None
     kind = "unfit" if hold.is_unfit or hold.holds_nothing else "load"
-    said = list_warnings(hold, question_of(fixture.listing.result.query), MILLIMETRE)
+    said = list_warnings(hold, fixture, question_of(fixture.listing.result.query), MILLIMETRE)
     return [(kind, f"{words[:1].upper()}{words[1:]}") for words in said]

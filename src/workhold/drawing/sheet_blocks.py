@@ -45,7 +45,8 @@ from workhold.drawing.sheet_writing import (
     write_flats,
     write_heading,
 )
-from workhold.drawing.supports_drawn import draw_pad, draw_tip, support_steps, write_heights, write_supports
+from workhold.drawing.support_signs import draw_pad, draw_tip
+from workhold.drawing.supports_drawn import support_steps, write_heights, write_supports
 from workhold.drawing.upper_side import write_part, write_side, write_side_up
 from workhold.errors import join_words
 from workhold.fixels.carrier import Carrier, Measure, make_column_letters, make_hole_name

@@ -19,7 +19,7 @@ from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import BLACK, GREY, UNITS_PER_MM, Box, LengthUnit, Scene, View, measure_text
 from workhold.drawing.sheet_writing import NOTE
 from workhold.drawing.side_view import SideContact, SideView
-from workhold.drawing.supports_drawn import SUPPORT
+from workhold.drawing.support_signs import SUPPORT
 
 __all__ = ["SideFigure", "move_apart"]
 

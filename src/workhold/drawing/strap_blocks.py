@@ -9,7 +9,7 @@ from workhold.model.fixture import Fixture
 from workhold.model.hold_words import set_force
 from workhold.model.straps import StrappedHold
 from workhold.supports.straps import StrapQuestion, question_of
-from workhold.supports.words_of_straps import list_steps, list_warnings, reckoned_with
+from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings, reckoned_with
 
 __all__ = ["draw_strap_panel", "strap_writers"]
 
@@ -34,7 +34,7 @@ def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) 
     column.draw_rule()
     write_strap_table(column, fixture, lengths)
     write_push(column, hold, lengths)
-    for sentence in list_warnings(hold, asked, lengths.unit):
+    for sentence in list_warnings(hold, fixture, asked, lengths.unit):
         column.write_item("▲", f"{sentence[:1].upper()}{sentence[1:]}", 12.5)
     if hold.clamp_needed_each:
         column.write_paragraph(reckoned_with(asked), 11.5, fill=GREY)
@@ -122,6 +122,8 @@ def write_strap_steps(column: TextColumn, sheet: Sheet) -> None:
     steps.append(f"Set the machine's zero, G54, from {sheet.datum.point} as given under part zero X0 Y0")
     for number, step in enumerate(steps, 1):
         column.write_item(f"{number}.", f"{step}.", BODY)
+    for remark in list_remarks(hold):
+        column.write_paragraph(remark, NOTE)
 
 
 def write_strap_loads(column: TextColumn, sheet: Sheet) -> None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from math import cos, hypot, radians, sin
 
 from workhold.drawing.scene import BLACK, GREY, Scene, View
+from workhold.drawing.support_signs import draw_pad
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
 from workhold.model.straps import StrappedHold
+from workhold.model.support_request import find_usual_pad_radius
 
 __all__ = ["draw_straps"]
 
@@ -17,11 +19,16 @@ ARROW_LENGTH = 46.0
 
 
 def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, weight: float) -> None:
-    """Draws the straps of a seat, the holes of their bolts where these are their own, and the push by hand."""
+    """Draws the straps and supports of a seat, the holes of their bolts where these are their own, and the push by hand."""
     straps = toolkit.strap_set
     assert straps is not None
     radius = max(straps.tip_radius * view.scale, 3.0)
-    bolt = max(toolkit.plates[0].peg_radius * view.scale, 2.5)
+    plate = toolkit.plates[0]
+    bolt = max(plate.peg_radius * view.scale, 2.5)
+    pad = max(find_usual_pad_radius(toolkit) * view.scale, 4.0)
+    for place in hold.supports:
+        x, y = plate.place(*place)
+        draw_pad(scene.group("supports"), view((float(x), float(y))), pad)
     for number, one in enumerate(hold.straps, 1):
         group = scene.group("strap")
         hole = straps.bolts.place(*one.hole)
@@ -35,7 +42,9 @@ def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, 
             ends = [(start[0] - size, start[1] - way * size), (start[0] + size, start[1] + way * size)]
             group.add_line(ends, BLACK, 1.0 * weight)
         if weight >= 1.0:
-            group.add_text((tip[0], tip[1] + 4), str(number), 11, "middle", bold=True)
+            # Over a support its sign is below the tip: the number stands on the bar.
+            x, y = tip if one.over is None else ((start[0] + tip[0]) / 2, (start[1] + tip[1]) / 2)
+            group.add_text((x, y + 4), str(number), 11, "middle", bold=True)
     if hold.push is not None:
         turn = radians(hold.push.direction_deg)
         x, y = view(hold.push.at)

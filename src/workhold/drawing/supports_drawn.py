@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import cos, dist, pi, sin
+from math import dist, pi
 
 from attrs import frozen
 
@@ -12,17 +12,15 @@ from workhold.drawing.annotation import Label, LabelPlacer, Place, make_label_ar
 from workhold.drawing.panel import TextColumn, describe_move
 from workhold.drawing.scene import Box, Scene, View, measure_text
 from workhold.drawing.sheet_writing import BODY, NOTE, Sheet, write_fact_or_field, write_heading
+from workhold.drawing.support_signs import SUPPORT, draw_pad, draw_tip
 from workhold.errors import join_words
 from workhold.geometry.segment import Point
 from workhold.model.support_triples import ChosenSupports
 from workhold.units import Unit
 
 __all__ = [
-    "SUPPORT",
     "PlannedSupports",
-    "draw_pad",
     "draw_supports",
-    "draw_tip",
     "draw_triangle",
     "describe_supports",
     "choose_lettering_size",
@@ -32,7 +30,6 @@ __all__ = [
     "write_supports",
 ]
 
-SUPPORT = "#1b6e3c"
 # A sign is at least so large, page units.
 SMALLEST = 6.0
 NAME, HIGH = 13.0, 19.0
@@ -134,26 +131,6 @@ def draw_triangle(scene: Scene, corners: Sequence[Point]) -> None:
     for one, other in pairwise([*corners, corners[0]]):
         scene.add_line(
             [one, other], SUPPORT, 1.1, stroke_dasharray="9 3 2 3", **{"class": "support-triangle"}
-        )
-
-
-def draw_pad(scene: Scene, at: Point, radius: float = 7.0) -> None:
-    """Draw a support seen from above about a page point: a disc with a triangle."""
-    scene.add_circle(at, radius, "#ffffff", SUPPORT, 1.6, **{"class": "support"})
-    corners = [
-        (at[0] + 0.72 * radius * sin(2 * pi * k / 3), at[1] - 0.72 * radius * cos(2 * pi * k / 3))
-        for k in range(3)
-    ]
-    scene.add_polygon(corners, SUPPORT)
-
-
-def draw_tip(scene: Scene, at: Point, radius: float = 7.0) -> None:
-    """Draw the tip of a clamp that presses down about a page point: a disc with a cross."""
-    scene.add_circle(at, radius, "#ffffff", SUPPORT, 2.2, **{"class": "top-clamp"})
-    reach = radius * cos(pi / 4)
-    for way in (1, -1):
-        scene.add_line(
-            [(at[0] - reach, at[1] - way * reach), (at[0] + reach, at[1] + way * reach)], SUPPORT, 1.8
         )
 
 

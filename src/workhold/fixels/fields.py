@@ -407,6 +407,24 @@ STRAP_REACH = ToolkitField(
     least="0",
     belongs_to="straps",
 )
+STRAPS_OVER = ToolkitField(
+    "over",
+    "choice",
+    "What lies under the straps: the plate, with the whole foot of the part on it, or three supports, each tip over one "
+    "of them; the plate if not given.",
+    (
+        PageLabel(
+            "Straps press over",
+            "the plate",
+            choices=(Choice("plate", "the plate"), Choice("supports", "three supports")),
+        ),
+    ),
+    default="plate",
+    figure="what straps press the part onto",
+    entry='write "plate" or "supports"',
+    choices=("plate", "supports"),
+    belongs_to="straps",
+)
 BOLT_PITCH = ToolkitField(
     "bolt_pitch",
     "pitch",
@@ -465,6 +483,7 @@ OPTIONS = (
     STRAPS,
     TIP_RADIUS,
     STRAP_REACH,
+    STRAPS_OVER,
     BOLT_PITCH,
     BOLT_OFFSET,
 )

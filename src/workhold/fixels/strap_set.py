@@ -20,6 +20,7 @@ class StrapSet:
     reach : the least and the greatest distance of the tip from the middle of the bolt's hole.
     max_force : that a strap is rated for, in N; None where nobody says.
     bolts : the lattice of holes for bolts; the plate itself where the dowels' own holes take them.
+    over : what the part lies on under the tips, "plate" or "supports".
     """
 
     count: int
@@ -27,6 +28,12 @@ class StrapSet:
     reach: tuple[float, float]
     max_force: float | None
     bolts: Carrier
+    over: str = "plate"
+
+    @property
+    def is_over_supports(self) -> bool:
+        """Whether the part lies on three supports, and each tip presses over one of them."""
+        return self.over == "supports"
 
     @property
     def is_on_dowel_holes(self) -> bool:

@@ -26,6 +26,8 @@ __all__ = ["StrapPlate"]
 
 # What part of a pitch counts as rounding.
 ROUNDING = 1e-9
+# A part lies on so many.
+SUPPORTS = 3
 
 
 @make_class_from_table
@@ -40,6 +42,8 @@ class StrapPlate(Toolkit):
     straps : how many press the part down, 1 to 4.
     tip_radius : of a strap's round tip in mm.
     reach : least and most in mm from the middle of a bolt's hole to the tip of its strap.
+    over : "plate", where the part's foot lies under each tip, or "supports", three of which it lies on, each tip
+        over one.
     bolt_pitch : of holes for bolts in mm, one number or (x, y), a whole part of the pitch; None where the
         dowels' own holes take the bolts.
     bolt_offset : from the first dowel hole to the first hole for a bolt in mm, one number or (x, y).
@@ -69,6 +73,7 @@ class StrapPlate(Toolkit):
             fields.STRAPS,
             fields.TIP_RADIUS,
             fields.STRAP_REACH,
+            fields.STRAPS_OVER,
             fields.BOLT_PITCH,
             fields.BOLT_OFFSET,
             fields.MAX_FORCE.relabel(
@@ -125,6 +130,7 @@ class StrapPlate(Toolkit):
     straps: int
     tip_radius: float
     reach: tuple[float, float]
+    over: str
     bolt_pitch: tuple[float, float] | None
     bolt_offset: tuple[float, float]
     max_force: float | None
@@ -140,6 +146,7 @@ class StrapPlate(Toolkit):
             straps: int = 2,
             tip_radius: float = 6.0,
             reach: Iterable[float] = (20.0, 60.0),
+            over: str = "plate",
             bolt_pitch: float | Iterable[float] | None = None,
             bolt_offset: float | Iterable[float] = 0.0,
             max_force: float | None = None,
@@ -156,6 +163,11 @@ class StrapPlate(Toolkit):
         if not 0 <= least <= most or most == 0:
             raise InputError(
                 f"straps cannot reach from {least:g} to {most:g} mm: give the smaller distance first."
+            )
+        if self.over == "supports" and self.straps > SUPPORTS:
+            raise InputError(
+                f"{self.straps} straps do not find a support each, as the part lies on {SUPPORTS}: give 1 to "
+                f"{SUPPORTS} straps, or let them press over the plate."
             )
         if self.bolt_pitch is None:
             if self.bolt_offset != (0.0, 0.0):
@@ -186,7 +198,7 @@ class StrapPlate(Toolkit):
 
     @cached_property
     def strap_set(self) -> StrapSet:
-        return StrapSet(self.straps, self.tip_radius, self.reach, self.max_force, self.bolts)
+        return StrapSet(self.straps, self.tip_radius, self.reach, self.max_force, self.bolts, self.over)
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:

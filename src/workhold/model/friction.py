@@ -19,6 +19,7 @@ from workhold.limits import MOST_FRICTION, convert_real
 __all__ = [
     "COEFFICIENTS",
     "COUNTED_BY_STRAPS",
+    "COUNTED_OVER_SUPPORTS",
     "SAFETY",
     "Coefficient",
     "Coefficients",
@@ -54,8 +55,9 @@ COEFFICIENTS: Mapping[str, Coefficient] = {
     "support": Coefficient(0.10, "support and milled steel", "as of a smooth jaw"),
     "tip": Coefficient(0.10, "clamp tip and milled steel", "as of a smooth jaw"),
 }
-# Those that count where straps press a part down.
+# Those that count where straps press a part down onto the plate, and onto supports.
 COUNTED_BY_STRAPS = "tip", "plate"
+COUNTED_OVER_SUPPORTS = "tip", "support"
 
 
 def coefficients_of(value: Any) -> Coefficients | None:

@@ -3,8 +3,8 @@ Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this 
 
 Glossary
 --------
-reach : the extent of part and pegs, widened by one pitch or a fourteenth of the extent, and as far along the
-    travel as carriers slide. The holes within it show. A lattice without a number of columns or rows goes on
+reach : the extent of part, pegs and bolts of straps, widened by one pitch or a fourteenth of the extent, and as
+    far along the travel as carriers slide. The holes within it show. A lattice without a number of columns or rows goes on
     before column A and row 1, so that the plate is under the whole part. Those holes have no names, and their
     numbers are negative.
 plate : the rectangle around the holes that show, half a pitch wider.
@@ -38,6 +38,7 @@ from workhold.model.fixture import Fixture, Peg
 from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 from workhold.model.setup import LengthSetting, list_length_settings
+from workhold.model.straps import StrappedHold
 from workhold.model.wall_ends import standouts
 from workhold.model.workpiece import Workpiece
 
@@ -62,14 +63,34 @@ Side = Literal["left", "right", "bottom", "top"]
 ROUNDING = 1e-6
 
 
-def bound_held_part(part: Box, fixture: Fixture, clamps: Sequence[ShownClamp]) -> Box:
-    """The extent of part, pegs and clamps, in mm."""
-    places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps)]
+def bound_held_part(
+    part: Box, fixture: Fixture, clamps: Sequence[ShownClamp], bolts: Sequence[Point] = ()
+) -> Box:
+    """The extent of part, pegs, clamps and bolts of straps, in mm."""
+    places = [*((peg.x, peg.y) for peg in fixture.pegs), *(clamp.back for clamp in clamps), *bolts]
     return reduce(Box.union, (Box(x, y, x, y) for x, y in places), part)
 
 
+def list_strap_bolts(fixture: Fixture, toolkit: Toolkit) -> list[Point]:
+    """The places of the bolts of straps, in mm."""
+    straps, hold = toolkit.strap_set, fixture.hold
+    if straps is None or not isinstance(hold, StrappedHold):
+        return []
+    places = (straps.bolts.place(*one.hole) for one in hold.straps)
+    return [(float(x), float(y)) for x, y in places]
+
+
+def list_strap_holes(fixture: Fixture, toolkit: Toolkit) -> frozenset[tuple[int, int]]:
+    """The holes of the plate, column and row, in which bolts of straps and supports below the part stand."""
+    straps, hold = toolkit.strap_set, fixture.hold
+    if straps is None or not isinstance(hold, StrappedHold):
+        return frozenset()
+    bolts = [one.hole for one in hold.straps] if straps.is_on_dowel_holes else []
+    return frozenset([*bolts, *hold.supports])
+
+
 def reach_of(held: Box, fixture: Fixture, carriers: Sequence[Carrier]) -> Box:
-    """The reach about the extent of part, pegs and clamps, in mm; see the glossary."""
+    """The reach about the extent of part, pegs, clamps and bolts, in mm; see the glossary."""
     reach = held
     more = max(reach.width, reach.height) / 14
     more_x, more_y = (max(more, *(carrier.pitch[axis] for carrier in carriers)) for axis in (0, 1))
@@ -183,6 +204,7 @@ class ShownCarrier:
     pegs : of the fixture, those that stand on it.
     bolted : those of clamps that are bolted to it.
     clamping : unit vector along which it slides and pushes when it clamps; None when it stands still.
+    strapped : its holes, column and row, in which bolts of straps and supports stand.
     """
 
     carrier: Carrier
@@ -195,12 +217,13 @@ class ShownCarrier:
     pegs: tuple[Peg, ...]
     bolted: tuple[ShownClamp, ...]
     clamping: Point | None
+    strapped: frozenset[tuple[int, int]] = frozenset()
 
     @property
     def used(self) -> set[tuple[int, int]]:
         """The holes, column and row, in which something stands."""
         clamps = {(clamp.tip.column, clamp.tip.row) for clamp in self.bolted if clamp.hole is not None}
-        return clamps | {(peg.column, peg.row) for peg in self.pegs}
+        return clamps | {(peg.column, peg.row) for peg in self.pegs} | self.strapped
 
     @property
     def used_columns(self) -> set[int]:
@@ -441,7 +464,7 @@ def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
     travelled = fixture.travel
     carriers = toolkit.plates
     clamps = tuple(list_shown_clamps(fixture, toolkit))
-    held = bound_held_part(part, fixture, clamps)
+    held = bound_held_part(part, fixture, clamps, list_strap_bolts(fixture, toolkit))
     reach, lowest = reach_of(held, fixture, carriers), inf if toolkit.ends_on_walls else held.y0
     ranges = [find_cells_in_reach(carrier, travelled, reach, (held.x0, lowest)) for carrier in carriers]
     spans = [span(carrier, travelled, *cells) for carrier, cells in zip(carriers, ranges, strict=True)]
@@ -469,6 +492,7 @@ def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> Shown:
                 pegs=tuple(peg for peg in fixture.pegs if peg.carrier == carrier.name),
                 bolted=tuple(clamp for clamp in clamps if clamp.carrier.on == carrier.name),
                 clamping=find_clamping_direction(carrier, toolkit),
+                strapped=list_strap_holes(fixture, toolkit),
             )
         )
     measured = tuple(measured_between(out, setting) for setting in list_length_settings(fixture, toolkit))

@@ -126,12 +126,20 @@ class Strap:
     ----------
     hole : column and row of its bolt, as the fixture's pegs count them, or in a lattice of bolts' own.
     at : of its tip, in mm in the plate's frame.
-    height : of the face on which it presses above the plate, in mm, as high as its heel stands.
+    height : of the face on which it presses above the plate, in mm, as high as its heel stands; above the
+        supports where nobody says how high these are.
+    over : column and row of the support below it; None where the part lies on the plate.
     """
 
     hole: tuple[int, int]
     at: tuple[float, float]
     height: float
+    over: tuple[int, int] | None = None
+
+    @property
+    def written_over(self) -> list[int] | str:
+        """What is below it, as files name it."""
+        return "plate" if self.over is None else list(self.over)
 
 
 @frozen
@@ -158,10 +166,12 @@ class StrappedHold:
     ----------
     straps : in order of their holes; none where they find no places.
     push : by hand; None where none presses the part against all locators.
-    places : how many places for a strap there are; None where none was sought.
+    places : how many places for a strap there are, or holes that may hold a support where these are under it;
+        None where none was sought.
     clamp_needed_each : the force in N of each strap that each load asks for; None where none is enough.
     max_force : that a strap is rated for, in N; None where nobody says.
     is_looked_at : whether a push was sought, and straps where there are loads; only for the best seats they are.
+    supports : columns and rows of the three supports that the part lies on; none where it lies on the plate.
     """
 
     straps: tuple[Strap, ...]
@@ -170,6 +180,7 @@ class StrappedHold:
     clamp_needed_each: tuple[float | None, ...] = ()
     max_force: float | None = None
     is_looked_at: bool = True
+    supports: tuple[tuple[int, int], ...] = ()
 
     @property
     def clamp_needed(self) -> float | None:
@@ -212,10 +223,10 @@ class StrappedHold:
         push = self.push
         return {
             "straps": [
-                {"hole": list(one.hole), "at": list(one.at), "over": "plate", "heel": one.height}
+                {"hole": list(one.hole), "at": list(one.at), "over": one.written_over, "heel": one.height}
                 for one in self.straps
             ],
-            "supports": [],
+            "supports": [list(one) for one in self.supports],
             "push": None if push is None else {"at": list(push.at), "direction_deg": push.direction_deg},
             "places": self.places,
             "quality": {

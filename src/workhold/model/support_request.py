@@ -50,6 +50,7 @@ __all__ = [
     "loops_of",
     "pressed_by",
     "compute_usual_head",
+    "find_usual_pad_radius",
 ]
 
 # In mm, where nobody says; a pad that the holes leave less room for than the last is none.
@@ -318,12 +319,10 @@ class SupportRequest:
             raise InputError("the thickness of the part is not known: give it in mm.")
         pads = toolkit.supports if toolkit is not None and toolkit.supports is not None else SupportPads()
         clamp = toolkit.top_clamp if toolkit is not None and toolkit.top_clamp is not None else TopClamp()
-        pad_radius = pads.pad_radius if pad_radius is None else pad_radius
         tip_radius = clamp.tip_radius if tip_radius is None else tip_radius
         tip_radius = TIP_RADIUS if tip_radius is None else tip_radius
         if pad_radius is None:
-            room = PAD_RADIUS if toolkit is None else find_least_hole_distance(toolkit) / 2
-            pad_radius = min(PAD_RADIUS, room) if room >= LEAST_PAD_RADIUS else PAD_RADIUS
+            pad_radius = find_usual_pad_radius(toolkit)
         return cls(
             thickness=solid.height if thickness is None and solid is not None else thickness,
             pad_radius=pad_radius,
@@ -402,6 +401,16 @@ class SupportRequest:
                 f"pads of radius {self.pad_radius:g} would overlap {apart:g} mm apart: give a smaller "
                 "pad radius."
             )
+
+
+def find_usual_pad_radius(toolkit: Toolkit | None) -> float:
+    """The radius in mm of a toolkit's supports, or the usual one, as small as its holes ask for."""
+    if toolkit is None:
+        return PAD_RADIUS
+    if toolkit.supports is not None and toolkit.supports.pad_radius is not None:
+        return toolkit.supports.pad_radius
+    room = find_least_hole_distance(toolkit) / 2
+    return min(PAD_RADIUS, room) if room >= LEAST_PAD_RADIUS else PAD_RADIUS
 
 
 def find_least_hole_distance(toolkit: Toolkit) -> float:

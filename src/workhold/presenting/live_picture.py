@@ -20,14 +20,8 @@ from attrs import evolve, frozen
 from workhold.drawing.bench import Bench, make_bench
 from workhold.drawing.panel import describe_fixture
 from workhold.drawing.scene import Box, Scene, View, measure_text
-from workhold.drawing.supports_drawn import (
-    SUPPORT,
-    PlannedSupports,
-    choose_lettering_size,
-    draw_pad,
-    draw_tip,
-    draw_triangle,
-)
+from workhold.drawing.support_signs import SUPPORT, draw_pad, draw_tip
+from workhold.drawing.supports_drawn import PlannedSupports, choose_lettering_size, draw_triangle
 from workhold.errors import InputError
 from workhold.geometry.segment import Point
 from workhold.model.fixture import Fixture

@@ -261,29 +261,36 @@ def moved_into_view(
         holes = np.array([strap.hole for strap in hold.straps], np.int64).reshape(-1, 2)
         for axis, count in enumerate((plate.columns, plate.rows)):
             if count is None:
-                moves[place, axis] = max(-int((holes[:, axis] // ratio[axis]).min(initial=0)), 0)
+                least = min(
+                    int((holes[:, axis] // ratio[axis]).min(initial=0)),
+                    *(one[axis] for one in hold.supports),
+                    0,
+                )
+                moves[place, axis] = -least
     out = [
-        hold if not move.any() else move_hold(hold, move * np.array(plate.pitch), move * ratio)
+        hold if not move.any() else move_hold(hold, move, plate, move * ratio)
         for hold, move in zip(holds, moves, strict=True)
     ]
     return moved(table, moves, plate), out
 
 
-def move_hold(hold: StrappedHold, by: Array, holes: IntArray) -> StrappedHold:
-    """Straps and the push moved by a length (2,) in mm, which are so many holes (2,) for bolts."""
-    dx, dy = by.tolist()
+def move_hold(hold: StrappedHold, pegs: IntArray, plate: Carrier, holes: IntArray) -> StrappedHold:
+    """Straps, supports and the push moved by holes (2,) of the plate, which are so many holes (2,) for bolts."""
+    dx, dy = (pegs * np.array(plate.pitch)).tolist()
     straps = tuple(
         Strap(
             (one.hole[0] + int(holes[0]), one.hole[1] + int(holes[1])),
             (one.at[0] + dx, one.at[1] + dy),
             one.height,
+            None if one.over is None else (one.over[0] + int(pegs[0]), one.over[1] + int(pegs[1])),
         )
         for one in hold.straps
     )
+    supports = tuple((column + int(pegs[0]), row + int(pegs[1])) for column, row in hold.supports)
     push = hold.push
     there = (
         None
         if push is None
         else HandPush((push.at[0] + dx, push.at[1] + dy), push.direction_deg, push.shares)
     )
-    return evolve(hold, straps=straps, push=there)
+    return evolve(hold, straps=straps, push=there, supports=supports)

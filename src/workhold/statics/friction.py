@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 __all__ = [
+    "BROKEN",
     "DIRECTIONS",
     "Grip",
     "MotionProgram",

@@ -23,7 +23,7 @@ from workhold.model.support_request import SupportRequest
 from workhold.model.workpiece import Workpiece
 from workhold.supports.faces import FaceBorders, TouchableFace
 
-__all__ = ["StrapPlaces", "find_strap_places"]
+__all__ = ["StrapPlaces", "find_bolt_holes", "find_strap_places", "find_top_face"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -52,20 +52,39 @@ def find_strap_places(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, request: SupportRequest, straps: StrapHardware
 ) -> StrapPlaces:
     """The places for straps on the plate of a fixture, which the part lies on."""
-    outline = [np.asarray(loop) for loop in workpiece.loops]
-    top = (
-        TouchableFace.of(
-            request.top or outline, (zone.loop for zone in request.top_zones), request.top_heights
-        )
-        if request.top is None or request.top
-        else None
-    )
-    bottom = TouchableFace.of(request.bottom or outline) if request.bottom is None or request.bottom else None
-    plate = next(carrier for carrier in toolkit.carriers if carrier.has_lattice and carrier.travel is None)
-    bolts = plate if toolkit.strap_set is None else toolkit.strap_set.bolts
+    top, bottom = find_top_face(workpiece, request), None
+    if request.bottom is None or request.bottom:
+        bottom = TouchableFace.of(request.bottom or [np.asarray(loop) for loop in workpiece.loops])
     if top is None or bottom is None:
         return StrapPlaces(np.zeros((0, 2), np.int64), np.zeros((0, 2)))
-    part = FaceBorders(tuple(loop_segments(loop) for loop in outline))
+    hole, points = find_bolt_holes(fixture, workpiece, toolkit, straps)
+    turns = 2 * pi / WAYS * np.arange(WAYS)
+    radii = np.unique(np.linspace(*straps.reach, RADII))
+    ring = np.array([(r * np.cos(turn), r * np.sin(turn)) for r in radii for turn in turns])
+    at = (points[:, None] + ring).reshape(-1, 2)
+    hole = np.repeat(hole, len(ring), axis=0)
+    on_part = np.column_stack(fixture.pose.inverse.apply(*at.T))
+    room = np.minimum(top.room(on_part), bottom.room(on_part))
+    kept = room >= straps.tip_radius - GAP_SLACK
+    return StrapPlaces(hole[kept], at[kept])
+
+
+def find_top_face(workpiece: Workpiece, request: SupportRequest) -> TouchableFace | None:
+    """The face that tips may press on, less its zones; None where there is none."""
+    if request.top is not None and not request.top:
+        return None
+    outline = [np.asarray(loop) for loop in workpiece.loops]
+    zones = (zone.loop for zone in request.top_zones)
+    return TouchableFace.of(request.top or outline, zones, request.top_heights)
+
+
+def find_bolt_holes(
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, straps: StrapHardware
+) -> tuple[IntArray, Array]:
+    """The holes (B, 2) in which a bolt stands free within a strap's reach of the part, and their places (B, 2) in mm."""
+    plate = next(carrier for carrier in toolkit.carriers if carrier.has_lattice and carrier.travel is None)
+    bolts = plate if toolkit.strap_set is None else toolkit.strap_set.bolts
+    part = FaceBorders(tuple(loop_segments(np.asarray(loop)) for loop in workpiece.loops))
     x0, y0, x1, y1 = workpiece.bounds
     corners = np.array(fixture.pose.apply(np.array([x0, x1, x0, x1]), np.array([y0, y0, y1, y1])))
     reach = straps.reach[1]
@@ -98,13 +117,4 @@ def find_strap_places(
         at_pegs = np.array([(peg.x, peg.y) for peg in pegs]).reshape(-1, 2)
         apart = np.hypot(*np.moveaxis(points[:, None] - at_pegs[None], 2, 0))
         free &= (apart >= 2 * plate.peg_radius - GAP_SLACK).all(axis=1)
-    hole, points = hole[free], points[free]
-    turns = 2 * pi / WAYS * np.arange(WAYS)
-    radii = np.unique(np.linspace(*straps.reach, RADII))
-    ring = np.array([(r * np.cos(turn), r * np.sin(turn)) for r in radii for turn in turns])
-    at = (points[:, None] + ring).reshape(-1, 2)
-    hole = np.repeat(hole, len(ring), axis=0)
-    on_part = np.column_stack(back.apply(*at.T))
-    room = np.minimum(top.room(on_part), bottom.room(on_part))
-    kept = room >= straps.tip_radius - GAP_SLACK
-    return StrapPlaces(hole[kept], at[kept])
+    return hole[free], points[free]

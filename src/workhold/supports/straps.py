@@ -23,12 +23,20 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.fixels.carrier import Carrier
+from workhold.fixels.support_hardware import SupportPads
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.hull import compute_convex_hull
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Arc, Segment
 from workhold.model.fixture import Fixture, Peg
-from workhold.model.friction import SAFETY, Coefficients, coefficients_of, find_friction_coefficient
+from workhold.model.friction import (
+    COUNTED_BY_STRAPS,
+    COUNTED_OVER_SUPPORTS,
+    SAFETY,
+    Coefficients,
+    coefficients_of,
+    find_friction_coefficient,
+)
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone
 from workhold.model.straps import Strap, StrapHardware, StrappedHold
@@ -38,6 +46,7 @@ from workhold.statics.patches import PressedPolygon
 from workhold.statics.strapped import StrappedPart, StrapsOnPart
 from workhold.supports.hand_push import find_hand_push
 from workhold.supports.strap_places import StrapPlaces, find_strap_places
+from workhold.supports.straps_over_supports import PadPlaces, SupportedStraps
 
 __all__ = [
     "NO_LOADS",
@@ -76,6 +85,7 @@ class StrapQuestion:
     friction : coefficients by name, of "tip" and "plate"; usual ones for None.
     safety : the factor on loads.
     weight : of the part in N, without that factor; it acts at the middle of the foot.
+    is_over_supports : whether the part lies on three supports, and each tip presses over one of them.
     """
 
     straps: StrapHardware
@@ -84,6 +94,17 @@ class StrapQuestion:
     friction: Coefficients | None = None
     safety: float = SAFETY
     weight: float = 0.0
+    is_over_supports: bool = False
+
+    @property
+    def below(self) -> str:
+        """The name of the coefficient of friction below the part."""
+        return "support" if self.is_over_supports else "plate"
+
+    @property
+    def counted(self) -> tuple[str, str]:
+        """The names of the coefficients of friction that count."""
+        return COUNTED_OVER_SUPPORTS if self.is_over_supports else COUNTED_BY_STRAPS
 
     def plate(self, fixture: Fixture) -> Carrier:
         """The plate of a fixture, with the holes for locators and bolts."""
@@ -136,7 +157,12 @@ def question_of(query: Query) -> StrapQuestion:
     assert straps is not None
     # Without loads nobody need know how thick the part is.
     height = None if query.part_height is not None else UNKNOWN_HEIGHT
-    request = usual_request(query, height or query.thickness, straps.tip_radius, query.restrictions.zones)
+    zones = query.restrictions.zones
+    request = usual_request(query, height or query.thickness, straps.tip_radius, zones)
+    if straps.is_over_supports:
+        pads = SupportRequest.of(query.workpiece, request.thickness, toolkit=query.toolkit)
+        pads.refuse_fat_pads(query.toolkit)
+        request = evolve(request, pad_radius=pads.pad_radius, pad_margin=pads.pad_margin, bottom_zones=zones)
     return StrapQuestion(
         StrapHardware.of(straps),
         request,
@@ -144,6 +170,7 @@ def question_of(query: Query) -> StrapQuestion:
         query.friction,
         query.safety_factor,
         query.weight or 0.0,
+        straps.is_over_supports,
     )
 
 
@@ -205,13 +232,18 @@ class StrapSearch:
 
     @cached_property
     def part(self) -> StrappedPart:
+        """The part on the plate."""
+        return self.part_on(self.foot)
+
+    def part_on(self, below: PressedPolygon | Array) -> StrappedPart:
+        """The part on its foot, or on points (S, 2) of supports."""
         fixture, request = self.fixture, self.asked.request
         touched, inward = fixture.contact_points[self.locators], -fixture.normals[self.locators]
         workpiece = self.query.workpiece
         bands = request.for_fixture(fixture, workpiece.solid, numbered=workpiece.numbered)
         heights = bands.peg_bands(len(fixture.pegs))[self.locators]
         return StrappedPart(
-            touched, inward, heights, self.foot, find_friction_coefficient(self.asked.friction, "plate")
+            touched, inward, heights, below, find_friction_coefficient(self.asked.friction, self.asked.below)
         )
 
     @cached_property
@@ -232,8 +264,12 @@ class StrapSearch:
     @cached_property
     def heights(self) -> Array:
         """The height (P,) of the face on which a tip presses at each place, in mm."""
+        return self.measure_heights(self.places.at)
+
+    def measure_heights(self, at: Array) -> Array:
+        """The heights (N,) in mm of the face on which tips at points (N, 2) of the plate press, above its foot."""
         request, back = self.asked.request, self.fixture.pose.inverse
-        return np.array([request.clamped_height((float(x), float(y))) for x, y in back.apply(self.places.at)])
+        return np.array([request.clamped_height((float(x), float(y))) for x, y in back.apply(at)])
 
     @cached_property
     def down(self) -> Array:
@@ -272,7 +308,11 @@ class StrapSearch:
 
     def needs(self, chosen: Sequence[int]) -> tuple[float | None, ...]:
         """The force in N of each strap at some places that each load asks for; None where none is enough."""
-        program = MotionProgram(self.on(chosen))
+        return self.needs_of(self.on(chosen))
+
+    def needs_of(self, grip: StrapsOnPart) -> tuple[float | None, ...]:
+        """The force in N of each strap of a part that each load asks for; None where none is enough."""
+        program = MotionProgram(grip)
         out = []
         for rows in self.loads:
             forces = [program.least_force(row) for row in rows]
@@ -290,6 +330,8 @@ class StrapSearch:
 
     def best(self, cancel: Event | None = None) -> StrappedHold:
         """The straps that need the least force."""
+        if self.asked.is_over_supports:
+            return self.best_over_supports(cancel)
         hold = evolve(self.unloaded(), places=len(self.places))
         chosen = SetSearch(self).least(self.asked.straps.count, cancel)
         if chosen is None:
@@ -304,6 +346,30 @@ class StrapSearch:
             for k in chosen
         )
         return evolve(hold, straps=straps, clamp_needed_each=each)
+
+    def best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
+        """The supports and the straps over them that need the least force."""
+        pads = PadPlaces.of(self)
+        hold, found = evolve(self.unloaded(), places=len(pads)), SupportedStraps(self, pads)
+        chosen = found.least(cancel)
+        if chosen is None:
+            return hold
+        raised = (self.query.toolkit.supports or SupportPads()).height or 0.0
+        bolts = found.find_bolts(chosen.strapped)
+        assert bolts is not None
+        holes = [(int(column), int(row)) for column, row in pads.hole]
+        straps = tuple(
+            Strap(
+                bolt, (float(pads.at[k, 0]), float(pads.at[k, 1])), float(found.heights[k]) + raised, holes[k]
+            )
+            for k, bolt in zip(chosen.strapped, bolts, strict=True)
+        )
+        return evolve(
+            hold,
+            straps=straps,
+            clamp_needed_each=found.needs(chosen),
+            supports=tuple(holes[k] for k in chosen.pads),
+        )
 
     def unloaded(self) -> StrappedHold:
         """The push by hand alone, without any straps."""

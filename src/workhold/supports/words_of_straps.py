@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from workhold.model.fixture import Fixture
-from workhold.model.friction import COEFFICIENTS, COUNTED_BY_STRAPS, find_friction_coefficient
+from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
 from workhold.model.straps import StrappedHold
 from workhold.supports.straps import StrapQuestion
+from workhold.supports.straps_over_supports import find_middle, stand_on
 from workhold.units import Unit
 
-__all__ = ["list_steps", "list_warnings", "reckoned_with"]
+__all__ = ["list_remarks", "list_steps", "list_warnings", "reckoned_with"]
 
 
 def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:
@@ -18,7 +21,7 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
     holes = [
         plate.place_name(peg.column, peg.row) for peg in asked.locators(fixture) if peg.carrier == plate.name
     ]
-    steps.append(f"Locators stand in {', '.join(holes)}; the part lies on the plate")
+    steps.append(f"Locators stand in {', '.join(holes)}; {describe_bearing(found, fixture, asked, unit)}")
     if found.push is not None:
         x, y = (unit.number(value) for value in found.push.at)
         steps.append(
@@ -32,20 +35,55 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
             for one in found.straps
         ]
         steps.append(f"Bolt the straps in {' and in '.join(where)}, in {unit.abbreviation} of the plate")
+        heels = " and ".join(unit.format_length(one) for one in sorted({one.height for one in found.straps}))
+        above = " above the supports" if found.supports and find_support_height(fixture) is None else ""
         steps.append(
-            "Set the heels "
-            f"{' and '.join(unit.format_length(one) for one in sorted({one.height for one in found.straps}))} high, as "
-            "high as the face under each tip, and tighten the straps while the hand pushes"
+            f"Set the heels {heels} high{above}, as high as the face under each tip, and tighten the straps while the hand "
+            "pushes"
         )
     if found.clamp_needed is not None:
         steps.append(
             f"Each strap presses with {found.clamp_needed / unit.newtons:.0f} {unit.force} or more at its tip"
         )
-    if found.straps:
-        steps.append(
-            f"The straps are the best of {found.places} places: points of the rings about the bolts' holes, every 30 degrees"
-        )
     return steps
+
+
+def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> str:
+    """What the part lies on."""
+    if not asked.is_over_supports:
+        return "the part lies on the plate"
+    if not found.supports:
+        return "the part lies on three supports"
+    plate, height = asked.plate(fixture), find_support_height(fixture)
+    high = "" if height is None else f" {unit.format_length(height)} high"
+    return f"the part lies on supports{high} in {', '.join(plate.place_name(*one) for one in found.supports)}"
+
+
+def find_support_height(fixture: Fixture) -> float | None:
+    """How high the supports of a fixture's plate are, in mm; None where nobody says."""
+    pads = fixture.listing.result.toolkit.supports
+    return None if pads is None else pads.height
+
+
+def stands_on_supports(found: StrappedHold, fixture: Fixture, asked: StrapQuestion) -> bool:
+    """Whether the middle of the part's area is over its three supports."""
+    plate = asked.plate(fixture)
+    corners = np.array([plate.place(*one) for one in found.supports], np.float64)
+    return bool(stand_on(find_middle(fixture, fixture.listing.result.workpiece), corners[None])[0])
+
+
+def list_remarks(found: StrappedHold) -> list[str]:
+    """What the straps were chosen from, in sentences."""
+    if not found.straps:
+        return []
+    if found.supports:
+        return [
+            f"The supports and straps are the best of all sets of three among {found.places} holes under the part, with "
+            "each tip over a support."
+        ]
+    return [
+        f"The straps are the best of {found.places} places: points of the rings about the bolts' holes, every 30 degrees."
+    ]
 
 
 def reckoned_with(asked: StrapQuestion) -> str:
@@ -54,12 +92,12 @@ def reckoned_with(asked: StrapQuestion) -> str:
     named = (
         f"{find_friction_coefficient(asked.friction, name):g} between {COEFFICIENTS[name].between}"
         f" ({'as given' if name in given else 'usual'})"
-        for name in COUNTED_BY_STRAPS
+        for name in asked.counted
     )
     return f"Friction {' and '.join(named)}; loads times {asked.safety:g}."
 
 
-def list_warnings(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> list[str]:
+def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:
     """What to beware of, sentences with a full stop."""
     out = []
     if not found.is_looked_at:
@@ -67,9 +105,10 @@ def list_warnings(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> list
             "no push and no straps were looked for at this seat, as it is not among the best: ask for more of them."
         ]
     if not found.straps and found.places is not None:
+        out.append(describe_missing_places(asked))
+    if found.supports and not stands_on_supports(found, fixture, asked):
         out.append(
-            f"there are no places where {asked.straps.count} of these straps press the part flat on the plate: take another "
-            "number, smaller tips or a longer reach."
+            "the part does not stand on these supports by itself: hold it down until the straps are tight."
         )
     if found.push is None:
         out.append("unfit: no push by hand presses the part against all three locators.")
@@ -80,3 +119,16 @@ def list_warnings(found: StrappedHold, asked: StrapQuestion, unit: Unit) -> list
     if most is not None and need is not None and need > most:
         out.append(f"the loads ask for {need:.0f} N, and a strap is rated for {most:g} N.")
     return out
+
+
+def describe_missing_places(asked: StrapQuestion) -> str:
+    """Why there are no straps, with what to do."""
+    if asked.is_over_supports:
+        return (
+            f"there are no three supports under the part with {asked.straps.count} of these straps over them: take "
+            "another number, smaller pads or tips, a longer reach, or a finer pitch."
+        )
+    return (
+        f"there are no places where {asked.straps.count} of these straps press the part flat on the plate: take another "
+        "number, smaller tips or a longer reach."
+    )

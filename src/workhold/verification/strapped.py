@@ -13,11 +13,12 @@ from itertools import combinations, pairwise
 from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 
 import numpy as np
-from attrs import field, frozen
+from attrs import evolve, field, frozen
 from flint import arb, arb_mat, ctx
 from numpy.typing import NDArray
 
 from workhold.fixels.strap_set import StrapSet
+from workhold.fixels.support_hardware import SupportPads
 from workhold.geometry.loop import loop_segments
 from workhold.geometry.segment import Arc, Segment, measure_distance_to_segment
 from workhold.model.fixture import Fixture
@@ -40,6 +41,7 @@ from workhold.verification.jaw_forces import (
 )
 from workhold.verification.placing import enclose_written_pose, find_avoided_faces, judge_gaps, prove_pose
 from workhold.verification.rules.hardware import ToolkitRules
+from workhold.verification.support_listing import SupportPlaces
 from workhold.verification.tolerances import AGREEMENT, Finding
 from workhold.verification.touching import judge_touching
 
@@ -48,6 +50,8 @@ __all__ = ["StrapJudge"]
 Array = NDArray[np.float64]
 # No unit. The determinant of three locators' wrenches is above this.
 LEAST_SEAT = 1e-6
+# A part lies on so many.
+SUPPORTS = 3
 # Parts of a force, and N, by which it may differ; with arcs, and of a range of directions, by more.
 FORCE_PART, FORCE_HAIR, ARC_PART, RANGE_PART = 1e-3, 1e-3, 5e-3, 0.012
 # Directions of a range that are looked at, and of friction at a tip.
@@ -88,11 +92,15 @@ class StrapJudge:
     @cached_property
     def request(self) -> SupportRequest:
         """The faces that tips and plate may touch."""
-        known = self.query.part_height
-        return SupportRequest.of(
-            self.query.workpiece,
-            1.0 if known is None else self.query.thickness,
-            tip_radius=self.straps.tip_radius,
+        known, query = self.query.part_height, self.query
+        return evolve(
+            SupportRequest.of(
+                query.workpiece,
+                1.0 if known is None else query.thickness,
+                tip_radius=self.straps.tip_radius,
+                toolkit=query.toolkit,
+            ),
+            bottom_zones=query.restrictions.zones,
         )
 
     def find_faults(self, fixture: Fixture, place: int) -> Iterator[str]:
@@ -228,10 +236,49 @@ class StrapJudge:
             ):
                 yield "the tips of two straps overlap"
         foot = self.foot(fixture.pose)
+        if self.straps.is_over_supports:
+            faults = list(self.support_faults(fixture, hold))
+            yield from faults
+            if not faults:
+                yield from self.force_faults(fixture, hold, foot)
+            return
+        if hold.supports or any(one.over is not None for one in hold.straps):
+            yield "it lies on supports, which are not asked for"
+            return
         middle = np.mean([one.at for one in hold.straps], axis=0)
         if foot.pressure_at(middle).min() * foot.area < -KERN_SLACK:
             yield "the straps alone do not press the part flat on the plate"
         yield from self.force_faults(fixture, hold, foot)
+
+    def support_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+        """Whether the part lies on three supports that may stand there, with each tip over one of them."""
+        plate, holes = self.query.toolkit.plates[0], hold.supports
+        if len(set(holes)) != SUPPORTS or len(holes) != SUPPORTS:
+            yield "it does not lie on supports in three holes"
+            return
+        room = SupportPlaces(self.query, fixture, self.request)
+        for column, row in holes:
+            name = plate.place_name(column, row)
+            if not (0 <= column < (plate.columns or inf) and 0 <= row < (plate.rows or inf)):
+                yield f"the support in {name} is not on the plate"
+            short = room.compute_pad_room((plate.name, column, row))
+            if short < -AGREEMENT:
+                yield f"the support in {name} breaks its rules by {-short:.3g} mm"
+        places = np.array([plate.place(*one) for one in holes], float)
+        corners = np.column_stack([places, np.ones(SUPPORTS)])
+        if abs(np.linalg.det(corners)) < AGREEMENT:
+            yield "its supports are on one line"
+            return
+        for number, one in enumerate(hold.straps, 1):
+            if one.over not in holes:
+                yield f"strap {number} is over no support of the part"
+                continue
+            x, y = plate.place(*one.over)
+            if hypot(one.at[0] - x, one.at[1] - y) > self.request.pad_radius + AGREEMENT:
+                yield f"strap {number} has its tip beside its support"
+        middle = np.mean([one.at for one in hold.straps], axis=0)
+        if np.linalg.solve(corners.T, [*middle, 1.0]).min() < -AGREEMENT:
+            yield "the straps alone tip the part over its supports"
 
     def place_faults(self, fixture: Fixture, strap: Strap) -> Iterator[str]:
         """Whether the bolt of a strap stands free in a hole, and its tip on the part's face with the foot below."""
@@ -255,7 +302,8 @@ class StrapJudge:
             or min(distance_to(bolt, loop) for loop in loops) < plate.peg_radius - AGREEMENT
         ):
             yield "has its bolt in the part"
-        for name, face in (("upper face", self.request.top), ("foot", self.request.bottom)):
+        faces = [("upper face", self.request.top), ("foot", self.request.bottom)]
+        for name, face in faces[: 1 if straps.is_over_supports else 2]:
             borders = loops if face is None else [loop_segments(np.asarray(loop)) for loop in face]
             room = min((distance_to(tip, loop) for loop in borders), default=-1.0)
             if not is_inside(tip, borders) or room < straps.tip_radius - AGREEMENT:
@@ -265,6 +313,8 @@ class StrapJudge:
             if is_inside(tip, [loop]) or distance_to(tip, loop) < straps.tip_radius - AGREEMENT:
                 yield "has its tip in a keep-out zone"
         high = self.request.clamped_height((float(tip[0]), float(tip[1])))
+        if straps.is_over_supports:
+            high += self.raised
         if abs(strap.height - high) > AGREEMENT:
             yield f"has its heel {strap.height:.6g} mm high, and the face under its tip is {high:.6g} mm high"
 
@@ -303,8 +353,9 @@ class StrapJudge:
     def held(self, fixture: Fixture, hold: StrappedHold, foot: Foot) -> tuple[HeldBetweenJaws, Array]:
         """The part between plate and tips, and the centre (3,) that moments are taken about."""
         centre = np.array([*foot.centre, 0.0])
-        below = foot.pressing(find_friction_coefficient(self.query.friction, "plate"), centre)
-        places = np.array([[*one.at, one.height] for one in hold.straps]) - centre
+        below = self.below(hold, foot, centre)
+        raised = self.raised if self.straps.is_over_supports else 0.0
+        places = np.array([[*one.at, one.height - raised] for one in hold.straps]) - centre
         turns = [2 * pi * k / WAYS for k in range(WAYS)]
         rubbing = np.stack([compute_wrenches(places, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
         tips = PressingJaw(
@@ -321,6 +372,22 @@ class StrapJudge:
             for z in band
         ]
         return HeldBetweenJaws(below, tips, np.array(free)), centre
+
+    @property
+    def raised(self) -> float:
+        """How high in mm supports carry the part above the plate; 0 where nobody says."""
+        return (self.query.toolkit.supports or SupportPads()).height or 0.0
+
+    def below(self, hold: StrappedHold, foot: Foot, centre: Array) -> PressingJaw:
+        """What presses upward below the part: the plate on its foot, or three supports, each at a point."""
+        if not self.straps.is_over_supports:
+            return foot.pressing(find_friction_coefficient(self.query.friction, "plate"), centre)
+        plate = self.query.toolkit.plates[0]
+        at = np.array([[*plate.place(*one), 0.0] for one in hold.supports], float) - centre
+        turns = [2 * pi * k / WAYS for k in range(WAYS)]
+        rubbing = np.stack([compute_wrenches(at, (cos(turn), sin(turn), 0.0)) for turn in turns], axis=1)
+        coefficient = find_friction_coefficient(self.query.friction, "support")
+        return PressingJaw(compute_wrenches(at, (0.0, 0.0, 1.0)), rubbing, coefficient * np.eye(SUPPORTS))
 
     def weight(self, foot: Foot, centre: Array) -> Array:
         """The wrench (6,) of the part's weight, at the middle of its foot."""

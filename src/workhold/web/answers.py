@@ -31,7 +31,7 @@ from workhold.presenting.data import convert_finite, describe_helps, describe_so
 from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
 from workhold.presenting.zoomed_picture import draw_zoomed
 from workhold.supports.straps import question_of
-from workhold.supports.words_of_straps import list_steps, list_warnings
+from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings
 from workhold.units import MILLIMETRE
 
 __all__ = [
@@ -200,10 +200,13 @@ def strapped_answer(fixture: Fixture) -> dict[str, Any]:
     if fixture.listed is not None:
         asked = question_of(fixture.listed.result.query)
         words = {
-            "steps": [f"{step}." for step in list_steps(hold, fixture, asked, MILLIMETRE)],
-            "warnings": list_warnings(hold, asked, MILLIMETRE),
+            "steps": [
+                *(f"{step}." for step in list_steps(hold, fixture, asked, MILLIMETRE)),
+                *list_remarks(hold),
+            ],
+            "warnings": list_warnings(hold, fixture, asked, MILLIMETRE),
         }
-    names = ("straps", "push", "places", "looked_at")
+    names = ("straps", "supports", "push", "places", "looked_at")
     return {
         **{name: entry[name] for name in names},
         "unfit": hold.is_unfit,

@@ -26,6 +26,7 @@ __all__ = ["StrappedSeatPart", "check_strapped", "table_of_strapped"]
 LARGEST, MOST_HOLES = 1e9, 1_000_000
 Whole = Annotated[int, Field(ge=0)]
 Hole = Annotated[int, Field(ge=0, le=MOST_HOLES)]
+HolePair = Annotated[list[Hole], Field(min_length=2, max_length=2)]
 Number = Annotated[float, Field(ge=-LARGEST, le=LARGEST)]
 Point = Annotated[list[Number], Field(min_length=2, max_length=2)]
 
@@ -52,9 +53,9 @@ class StrappedPosePart(FormPart):
 class StrapPart(FormPart):
     """A strap: its bolt's hole, where its tip presses, on what, and how high its heel stands."""
 
-    hole: Annotated[list[Hole], Field(min_length=2, max_length=2)]
+    hole: HolePair
     at: Point
-    over: Literal["plate"] = "plate"
+    over: Literal["plate"] | HolePair = "plate"
     heel: Number
 
 
@@ -89,7 +90,11 @@ class StrappedSeatPart(FormPart):
     pose: StrappedPosePart
     looked_at: bool = True
     straps: list[StrapPart] = Field(max_length=4)
-    supports: list[Whole] = Field(default=[], max_length=0, description="none: the part lies on the plate")
+    supports: list[HolePair] = Field(
+        default=[],
+        max_length=3,
+        description="holes of the three that the part lies on; none: it lies on the plate",
+    )
     places: Whole | None = None
     push: PushPart | None
     quality: StrappedQualityPart
@@ -111,7 +116,12 @@ class StrappedSeatPart(FormPart):
         push = self.push
         return StrappedHold(
             tuple(
-                Strap((a, b), (x, y), one.heel)
+                Strap(
+                    (a, b),
+                    (x, y),
+                    one.heel,
+                    None if isinstance(one.over, str) else (one.over[0], one.over[1]),
+                )
                 for one in self.straps
                 for a, b in [one.hole]
                 for x, y in [one.at]
@@ -123,6 +133,7 @@ class StrappedSeatPart(FormPart):
             tuple(self.quality.clamp_needed_each),
             toolkit.strap_set.max_force,
             self.looked_at,
+            tuple((a, b) for a, b in self.supports),
         )
 
 

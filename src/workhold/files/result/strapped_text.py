@@ -74,12 +74,12 @@ def strapped_entry(fixture: Fixture) -> dict[str, Any]:
             {
                 "hole": list(one.hole),
                 "at": [length(value) for value in one.at],
-                "over": "plate",
+                "over": one.written_over,
                 "heel": length(one.height),
             }
             for one in hold.straps
         ],
-        "supports": [],
+        "supports": [list(one) for one in hold.supports],
         "places": hold.places,
         "push": None
         if push is None
