@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from workhold import Workpiece
 from workhold.bending.elastic import ElasticBody, PointForces
 from workhold.bending.materials import ElasticMaterial
-from workhold.bending.meshing import make_mesh, refine_mesh
+from workhold.bending.meshing import PartMesh, curve, make_mesh
 from workhold.bending.shape import PrismShape
 
 Array = NDArray[np.float64]
@@ -39,6 +39,13 @@ def bodies(
     pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
     mesh = make_mesh(PrismShape(make(*sizes), thickness))
     return ElasticBody(mesh, METAL), ElasticBody(refine_mesh(mesh), METAL)
+
+
+def refine_mesh(mesh: PartMesh) -> PartMesh:
+    """A mesh with each element cut into eight."""
+    fine = mesh.made.ngmesh.Copy()
+    fine.Refine()
+    return curve(fine)
 
 
 def even(low: float, high: float, count: int = 24) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import workhold
-from bent_bodies import METAL, MODULUS, RATIO
+from bent_bodies import METAL, MODULUS, RATIO, refine_mesh
 from workhold import InputError, Load, Result
 from workhold.bending import asking, library, meshing
 from workhold.bending.asking import BendingQuestion, SolvedLoads, UnitLoads, find_bendings, measure_distances
@@ -17,7 +17,7 @@ from workhold.bending.elastic import ElasticBody
 from workhold.bending.figures import find_bending_figure
 from workhold.bending.holding import ElasticHold, hold_of_fixture
 from workhold.bending.materials import MATERIALS, ElasticMaterial, find_material
-from workhold.bending.meshing import make_mesh, refine_mesh
+from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import LoadPatch, make_foot
 from workhold.bending.shape import PrismShape
 from workhold.statics.pins import compute_deflections
@@ -141,22 +141,19 @@ def test_a_bar_between_flat_jaws_is_squeezed_as_the_formula_says() -> None:
     assert shorter * 0.9 < found.clamp_distortion.value < np.hypot(shorter, 1.5 * wider) * 1.02
 
 
-def test_solved_at_once_is_what_is_superposed() -> None:
-    body, hold, units = body_of(), hold_in("vise"), UnitLoads()
-    numbers = units.add(hold.columns)
-    levels = [
-        SolvedLoads(body, units, BendingQuestion(METAL, HIGH), HIGH, result_in("vise").query)
-        for _ in range(2)
-    ]
-    for number in numbers:
-        levels[1].solve(number)
-    at_once, superposed = (level.add_up(numbers, hold.clamping) for level in levels)
-    assert not levels[0].responses
+@pytest.mark.parametrize("order", [2, 3])
+def test_solved_at_once_is_what_is_superposed(order: int) -> None:
+    body, hold = ElasticBody(body_of().mesh, METAL, order), hold_in("vise")
+    solved = SolvedLoads(body, UnitLoads(body.surface))
+    numbers = solved.units.add(hold.columns)
+    superposed = solved.add_up(numbers, hold.clamping)
+    works = [factor * solved.work_of(number) for number, factor in zip(numbers, hold.clamping, strict=True)]
+    at_once = body.respond([sum(works)])[0]
     assert np.abs(at_once - superposed).max() <= 1e-10 * np.abs(at_once).max()
 
 
 def test_unit_loads_that_fixtures_share_are_solved_once() -> None:
-    hold, units = hold_in("vise"), UnitLoads()
+    hold, units = hold_in("vise"), UnitLoads(body_of().surface)
     assert units.add(hold.columns) == units.add(hold.columns) == list(range(len(hold.columns)))
 
 
@@ -188,6 +185,9 @@ def test_only_faces_to_be_cut_count() -> None:
     assert (whole.faces, top.faces, face.faces) == (None, "top", "bottom, faces 3")
     with pytest.raises(InputError, match="face 9 of plate does not exist"):
         bent(result, faces=(9,))
+    other = workhold.Workpiece.from_points("other", [(200, 0), (300, 0), (300, 50)])
+    with pytest.raises(InputError, match=r"nothing of other lies on what is to be cut \(faces 2\)"):
+        asking.find_cut_nodes(body_of().surface, (2,), other, HIGH)
 
 
 def test_distances_from_lines_and_arcs() -> None:
@@ -204,10 +204,10 @@ def test_distances_from_lines_and_arcs() -> None:
 def test_a_finer_mesh_agrees_within_the_error_that_is_told(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Meshes refined once, as usual, against the same refined twice."""
+    """The usual mesh against the same refined once."""
     result = result_in(name)
     told = bent(result, jaw_force=3000.0)
-    monkeypatch.setattr(asking, "refine_mesh", lambda mesh: refine_mesh(refine_mesh(mesh)))
+    monkeypatch.setattr(asking, "make_mesh", lambda shape: refine_mesh(make_mesh(shape)))
     finer = bent(result, jaw_force=3000.0)
     assert told.give is not None and finer.give is not None
     for one, other in ((told.clamp_distortion, finer.clamp_distortion), (told.give, finer.give)):

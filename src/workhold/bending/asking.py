@@ -1,14 +1,15 @@
-"""How far the fixtures of a result bend their part: one mesh and one factorization for all of them.
+"""How far the fixtures of a result bend their part: one mesh and two factorizations for all of them.
 
-On the mesh as it was made every unit load is solved once: of each contact of all the fixtures, however many share it,
-of what bears the part, and of the places where tools and loads press. What a fixture's clamps do, and how far it gives
-at each place, are sums of these. The mesh is then refined, and what was worst is reckoned again: the difference is the
-error that is told.
+Every unit load is solved once: of each contact of all the fixtures, however many share it, of what bears the part, and
+of the places where tools and loads press. What a fixture's clamps do, and how far it gives at each place, are sums of
+these. This is done with elements of the second order. What was worst is reckoned again with the third order, and that is
+told: the difference is the error.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import chain
 from threading import Event
 
 import numpy as np
@@ -19,10 +20,11 @@ from workhold.bending.elastic import ElasticBody, PointForces, rigid_motions
 from workhold.bending.figures import Bending, BentPlace
 from workhold.bending.holding import ElasticHold, PadsBelow, hold_of_fixture
 from workhold.bending.materials import ElasticMaterial
-from workhold.bending.meshing import Surface, make_mesh, refine_mesh
-from workhold.bending.patches import BESIDE, LoadPatch, make_disc, make_foot
+from workhold.bending.meshing import make_mesh
+from workhold.bending.patches import BESIDE, make_disc, make_foot
 from workhold.bending.places import CutterLoads, list_cutter_loads
 from workhold.bending.shape import PartToBend
+from workhold.bending.surface import Footing, Surface, list_lattice
 from workhold.contact.problem import Progress
 from workhold.conventions import STATED_FORCE
 from workhold.errors import InputError
@@ -38,14 +40,18 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 # Radius of what a tool or a load presses on, in mm: its dent is not counted, so that it matters little.
 CUTTER_RADIUS = 2.0
-# The error that is told, of the change from the mesh to the refined one: at a dent, which is read near by, the change
-# halves at the next refinement, so that what is left is at most as much as it.
+# The error that is told, of the change from the second order to the third.
 UNSURE = 2.0
 # Nodes so near to a face of the outline are on it, in mm.
 ON_FACE = 0.02
 TOP, BOTTOM = "top", "bottom"
-# The shares of the work that are done once the mesh is made, the unit loads are solved, and the mesh is refined.
-MESHED, SOLVED, REFINED = 0.2, 0.6, 0.75
+# The shares of the work that are done once the mesh is made, and the unit loads are solved with the second order.
+MESHED, SOLVED = 0.25, 0.4
+# How far apart in mm points beside patches are at which the largest movement is looked for, and into how many pieces a
+# quarter of the side of a face is cut for it at most.
+CLOSE_BY, MOST_QUARTERS = 0.5, 8
+# Points near which nodes are looked for at once.
+PRESSED_AT_ONCE = 64
 
 
 @frozen(eq=False)
@@ -98,24 +104,29 @@ class BendingQuestion:
 
 @define(eq=False)
 class UnitLoads:
-    """Unit loads on a part, each once, by what they are.
+    """Unit loads on a part and readings of its movement, each once, by what they are.
 
     Parameters
     ----------
+    surface : of the part.
     forces : in the order in which they came.
+    footings : of these, where they act on the surface.
     """
 
+    surface: Surface
     forces: list[PointForces] = field(factory=list)
+    footings: list[Footing] = field(factory=list)
     numbers: dict[bytes, int] = field(factory=dict)
 
-    def add(self, columns: Iterable[PointForces]) -> list[int]:
-        """The numbers of some loads, those that are new at the end."""
+    def add(self, forces: Iterable[PointForces]) -> list[int]:
+        """The numbers of some loads or readings, those that are new at the end."""
         found = []
-        for column in columns:
-            key = (np.round(column.points, 6).tobytes(), np.round(column.forces, 12).tobytes())
-            number = self.numbers.setdefault(b"".join(key), len(self.forces))
+        for one in forces:
+            key = np.round(one.points, 6).tobytes() + np.round(one.forces, 12).tobytes()
+            number = self.numbers.setdefault(key, len(self.forces))
             if number == len(self.forces):
-                self.forces.append(column)
+                self.forces.append(one)
+                self.footings.append(self.surface.find_footing(one.points, one.outward))
             found.append(number)
         return found
 
@@ -128,18 +139,38 @@ class HeldFixture:
     ----------
     hold : its columns.
     numbers : of these among all unit loads.
+    reads : of each level of its locators, the numbers of their readings.
     force, is_stated : the jaw force in N, and whether nobody said it.
     """
 
     hold: ElasticHold
     numbers: list[int]
+    reads: list[list[int]]
     force: float
     is_stated: bool
 
 
 @frozen(eq=False)
+class PressedPlace:
+    """Where a tool or a load presses.
+
+    Parameters
+    ----------
+    middle : (3,) in mm.
+    cuts : numbers of its unit loads: forces along x, y and z, and a moment about the upright.
+    reads : numbers of its readings: movements along x, y and z.
+    wrenches : (6, 4) of the unit loads.
+    """
+
+    middle: Array
+    cuts: list[int]
+    reads: list[int]
+    wrenches: Array
+
+
+@frozen(eq=False)
 class WorstGive:
-    """Where a fixture gives most on the mesh that is not refined.
+    """Where a fixture gives most, with the second order.
 
     Parameters
     ----------
@@ -180,14 +211,15 @@ def find_bendings(
     cancel, tell = cancel or Event(), progress or tell_nobody
     refuse_unknown_faces(asked.faces, query.workpiece)
     tell(0.0, 0)
-    coarse = ElasticBody(make_mesh(shape), asked.material)
-    foot = make_foot(coarse.surface.nodes, coarse.surface.triangles, coarse.surface.normals, 0.0)
+    mesh = make_mesh(shape)
+    surface = mesh.surface
+    foot = make_foot(surface.nodes, surface.triangles, surface.normals, 0.0)
     if foot is None:
         raise InputError(
             "the part has no level face that it lies on, so it is not known what bears it: design it the other side up."
         )
     tell(MESHED, 0)
-    units = UnitLoads()
+    units = UnitLoads(surface)
     held: list[HeldFixture] = []
     for row in rows:
         fixture = result[row]
@@ -203,26 +235,30 @@ def find_bendings(
             stiffness=asked.stiffness,
             below=asked.below.get(row),
         )
-        held.append(HeldFixture(hold, units.add(hold.columns), force, is_stated))
+        reads = [units.add(level) for level in hold.locating]
+        held.append(HeldFixture(hold, units.add(hold.columns), reads, force, is_stated))
     loads = list_cutter_loads(query, height)
-    places = [] if loads is None else find_pressed_places(loads, coarse)
-    cuts = [units.add((*(patch.press(axis) for axis in np.eye(3)), patch.twist())) for patch in places]
-    solved = SolvedLoads(coarse, units, asked, height, query)
-    for number in range(len(units.forces)):
+    places = [] if loads is None else find_pressed_places(loads, units)
+    second, third = (SolvedLoads(ElasticBody(mesh, asked.material, order), units) for order in (2, 3))
+    needed = sorted(
+        {*chain.from_iterable(one.numbers for one in held), *chain.from_iterable(p.cuts for p in places)}
+    )
+    for count, number in enumerate(needed):
         if cancel.is_set():
             return []
-        solved.solve(number)
-        tell(MESHED + (SOLVED - MESHED) * (number + 1) / len(units.forces), 0)
-    gives = [None if loads is None else solved.find_worst_give(one, loads, places, cuts) for one in held]
-    fine = ElasticBody(refine_mesh(coarse.mesh), asked.material)
-    refined = SolvedLoads(fine, units, asked, height, query)
-    tell(REFINED, 0)
+        second.solve(number)
+        tell(MESHED + (SOLVED - MESHED) * (count + 1) / len(needed), 0)
+    is_cut = find_cut_nodes(surface, asked.faces, query.workpiece, height)
     found: list[Bending] = []
-    for one, give in zip(held, gives, strict=True):
-        if cancel.is_set():
-            break
-        found.append(describe(one, give, solved, refined, loads, places, cuts, query, asked))
-        tell(REFINED + (1 - REFINED) * len(found) / len(held), len(found))
+    for one in held:
+        give = None if loads is None else second.find_worst_give(one, loads, places)
+        needed = [*one.numbers, *(() if give is None else places[give.place].cuts)]
+        for number in needed:
+            if cancel.is_set():
+                return found
+            third.solve(number)
+        found.append(describe(one, give, second, third, loads, places, is_cut, query, asked))
+        tell(SOLVED + (1 - SOLVED) * len(found) / len(held), len(found))
     return found
 
 
@@ -233,26 +269,25 @@ def tell_nobody(fraction: float, count: int) -> None:
 def describe(
     one: HeldFixture,
     give: WorstGive | None,
-    solved: SolvedLoads,
-    refined: SolvedLoads,
+    second: SolvedLoads,
+    third: SolvedLoads,
     loads: CutterLoads | None,
-    places: list[LoadPatch],
-    cuts: list[list[int]],
+    places: list[PressedPlace],
+    is_cut: Mask,
     query: Query,
     asked: BendingQuestion,
 ) -> Bending:
-    """What is told of a fixture, from both meshes."""
-    distorted = []
-    for level in (solved, refined):
-        moved = level.lay(one, level.add_up(one.numbers, one.hold.clamping), np.zeros(len(one.hold.gives)))
-        pressed = level.find_pressed(one)
-        size = np.where(pressed | ~level.is_cut, 0.0, np.linalg.norm(moved, axis=1))
-        distorted.append((moved, pressed, int(size.argmax()), float(size.max())))
-    (*_, before), (moved, pressed, node, most) = distorted
-    at = refined.body.surface.nodes[node].tolist()
+    """What is told of a fixture, from what is solved with the second and the third order."""
+    surface = third.body.surface
+    pressed = find_pressed(surface.nodes, one.hold.pressed)
+    moved = third.clamp(one)
+    most = find_most_moved(one, moved, pressed, is_cut, second, third)
     given = None
     if give is not None and loads is not None:
-        value = refined.compute_give(one, places[give.place], cuts[give.place], give.vector)
+        vectors = [
+            level.compute_compliance(one, places[give.place]) @ give.vector for level in (second, third)
+        ]
+        value, change = (float(np.linalg.norm(of)) for of in (vectors[1], vectors[1] - vectors[0]))
         row, there = int(loads.row[give.load]), loads.points[give.load].tolist()
         line = tool = load = None
         if row >= 0 and query.program is not None:
@@ -260,112 +295,155 @@ def describe(
             line, tool = int(moves.line[row]), int(moves.tool[row])
         else:
             load = -row
-        given = BentPlace(value, UNSURE * abs(value - give.value), tuple(there), line, tool, load)
+        given = BentPlace(value, UNSURE * change, tuple(there), line, tool, load)
     return Bending(
         asked.material,
         one.force,
         one.is_stated,
-        BentPlace(most, UNSURE * abs(most - before), tuple(at)),
+        most,
         given,
-        refined.body.elements,
+        third.body.elements,
         describe_faces(asked.faces),
-        refined.body.surface,
+        surface,
         moved,
         pressed,
     )
 
 
-def find_pressed_places(loads: CutterLoads, body: ElasticBody) -> list[LoadPatch]:
+def find_most_moved(
+    one: HeldFixture, moved: Array, pressed: Mask, is_cut: Mask, second: SolvedLoads, third: SolvedLoads
+) -> BentPlace:
+    """Where clamping moves what counts most: among the nodes, and between them where something presses near by.
+
+    Parameters
+    ----------
+    moved, pressed, is_cut : (N, 3) and (N,) of the nodes, see :class:`Bending`.
+    """
+    surface = third.body.surface
+    size = np.linalg.norm(moved, axis=1)
+    most = float(np.where(pressed | ~is_cut, 0.0, size).max())
+    of_faces = surface.faces
+    faces = np.flatnonzero(is_cut[of_faces].all(axis=1) & (size[of_faces].max(axis=1) >= most))
+    longest = np.linalg.norm(np.diff(surface.corners[faces], axis=1), axis=2).max()
+    shares = list_lattice(4 * int(np.clip(np.ceil(longest / CLOSE_BY / 4), 1, MOST_QUARTERS)))
+    points, after = surface.place_on(faces, shares), third.clamp_on(one, faces, shares)
+    counts = ~find_pressed(points.reshape(-1, 3), one.hold.pressed).reshape(points.shape[:2])
+    far = np.where(counts, np.linalg.norm(after, axis=2), 0.0)
+    face, point = np.divmod(int(far.argmax()), len(shares))
+    before = second.clamp_on(one, faces[[face]], shares[[point]])[0, 0]
+    change = float(np.linalg.norm(after[face, point] - before))
+    return BentPlace(float(far[face, point]), UNSURE * change, tuple(points[face, point].tolist()))
+
+
+def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPlace]:
     """The patches of the surface that are loaded where tools and loads press."""
     found = []
     for number in loads.chosen.tolist():
-        footing = body.find_footing(PointForces(loads.points[number][None], np.zeros((1, 3))))
-        nodes = body.surface.nodes[body.surface.triangles[footing.triangles[0]]]
-        found.append(make_disc(footing.weights[0] @ nodes, CUTTER_RADIUS, None))
+        footing = units.surface.find_footing(loads.points[number][None], None)
+        patch = make_disc(units.surface.place(footing)[0], CUTTER_RADIUS, None)
+        pressing = [*(patch.press(axis) for axis in np.eye(3)), patch.twist()]
+        wrenches = np.array([force.wrench for force in pressing]).T
+        reads = units.add(patch.read(axis) for axis in np.eye(3))
+        found.append(PressedPlace(patch.middle, units.add(pressing), reads, wrenches))
+    return found
+
+
+def find_pressed(nodes: Array, points: Array) -> Mask:
+    """Which nodes (N,) lie where something presses at points (K, 3), or so near that its dent is felt."""
+    found = np.zeros(len(nodes), np.bool_)
+    for start in range(0, len(points), PRESSED_AT_ONCE):
+        some = points[start : start + PRESSED_AT_ONCE]
+        beside = (nodes > some.min(axis=0) - BESIDE) & (nodes < some.max(axis=0) + BESIDE)
+        near = np.flatnonzero(beside.all(axis=1) & ~found)
+        away = nodes[near, None] - some
+        found[near] = ((away**2).sum(axis=2) < BESIDE**2).any(axis=1)
     return found
 
 
 class SolvedLoads:
     """A body with what is solved of the unit loads on it."""
 
-    def __init__(
-        self, body: ElasticBody, units: UnitLoads, asked: BendingQuestion, height: float, query: Query
-    ) -> None:
+    def __init__(self, body: ElasticBody, units: UnitLoads) -> None:
         self.body, self.units = body, units
         self.works: dict[int, Array] = {}
         self.responses: dict[int, Array] = {}
-        self.is_cut = find_cut_nodes(body.surface, asked.faces, query.workpiece, height)
+        self.readings: dict[tuple[int, int], float] = {}
 
     def work_of(self, number: int) -> Array:
-        """The work (N, 3) of a unit load on the nodes."""
+        """The work (S, 3) of a unit load or a reading on the unknowns of the surface."""
         if number not in self.works:
-            self.works[number] = self.body.spread(self.units.forces[number])
+            self.works[number] = self.body.spread(self.units.forces[number], self.units.footings[number])
         return self.works[number]
 
-    def solve(self, number: int) -> None:
-        """Solve a unit load."""
-        self.responses[number] = self.body.respond([self.work_of(number)])[0]
+    def solve(self, number: int) -> Array:
+        """How the surface moves (S, 3) under a unit load, solved when it is first asked."""
+        if number not in self.responses:
+            self.responses[number] = self.body.respond([self.work_of(number)])[0]
+        return self.responses[number]
 
     def add_up(self, numbers: Sequence[int], factors: Array) -> Array:
-        """How nodes move (N, 3) under a sum of unit loads: superposed where all are solved, else solved at once."""
-        known = self.responses if all(number in self.responses for number in numbers) else None
-        total = np.zeros_like(self.body.surface.nodes)
+        """How the surface moves (S, 3) under a sum of unit loads."""
+        total = np.zeros((len(self.body.surface_unknowns[0]), 3))
         for number, factor in zip(numbers, factors.tolist(), strict=True):
             if factor:
-                total += factor * (self.work_of(number) if known is None else known[number])
-        return total if known is not None else self.body.respond([total])[0]
+                total += factor * self.solve(number)
+        return total
 
-    def read(self, forces: PointForces, moved: Array) -> float:
-        """What is read of a movement."""
-        number = self.units.add([forces])[0]
-        return float((self.work_of(number) * moved).sum())
+    def read(self, reads: Sequence[int], numbers: Sequence[int]) -> Array:
+        """What readings say (R, L) of the movement under each of some unit loads."""
+        return np.array([[self.read_one(read, number) for number in numbers] for read in reads])
 
-    def find_motion(self, one: HeldFixture, moved: Array, gives: Array) -> Array:
-        """The rigid motion that lays a movement against the locators of a fixture."""
-        readings = [np.array([self.read(each, moved) for each in level]) for level in one.hold.locating]
-        return one.hold.find_motion(readings, gives)
+    def read_one(self, read: int, number: int) -> float:
+        """What a reading says of the movement under a unit load."""
+        pair = (read, number)
+        if pair not in self.readings:
+            self.readings[pair] = float(np.einsum("sk,sk->", self.work_of(read), self.solve(number)))
+        return self.readings[pair]
 
-    def lay(self, one: HeldFixture, moved: Array, gives: Array) -> Array:
-        """A movement (N, 3) laid against the locators of a fixture, whose contacts give way by (R,) in mm."""
-        motion = self.find_motion(one, moved, gives)
-        return moved + rigid_motions(self.body.surface.nodes) @ motion
+    def find_motion(self, one: HeldFixture, numbers: Sequence[int], factors: Array, gives: Array) -> Array:
+        """The rigid motion (6,) that lays the part against its locators under a sum of unit loads.
 
-    def find_pressed(self, one: HeldFixture) -> Mask:
-        """Which nodes (N,) lie where something presses, or so near that its dent is felt."""
-        nodes = self.body.surface.nodes
-        nearest = np.full(len(nodes), np.inf)
-        for start in range(0, len(one.hold.pressed), 64):
-            away = nodes[:, None] - one.hold.pressed[None, start : start + 64]
-            nearest = np.minimum(nearest, (away**2).sum(axis=2).min(axis=1))
-        return nearest < BESIDE**2
+        Parameters
+        ----------
+        gives : (R,) how far its contacts give way, in mm.
+        """
+        return one.hold.find_motion([self.read(level, numbers) @ factors for level in one.reads], gives)
 
-    def compute_give(self, one: HeldFixture, place: LoadPatch, cut: list[int], vector: Array) -> float:
-        """How far the part gives in mm where something presses with a vector (4,)."""
-        matrix = self.compute_compliance(one, place, cut, vector[:, None])
-        return float(np.linalg.norm(matrix[:, 0]))
+    def clamp(self, one: HeldFixture) -> Array:
+        """How the clamps of a fixture move the nodes of the surface (N, 3), laid against its locators."""
+        values, motion = self.find_clamped(one)
+        return self.body.move_nodes(values) + rigid_motions(self.body.surface.nodes) @ motion
 
-    def compute_compliance(self, one: HeldFixture, place: LoadPatch, cut: list[int], vectors: Array) -> Array:
-        """How a place moves (3, V) under vectors (4, V) of forces and a moment on it, with all that answers them."""
-        columns = []
-        for vector in vectors.T:
-            wrench = sum(v * self.units.forces[k].wrench for v, k in zip(vector.tolist(), cut, strict=True))
-            answer = one.hold.answers @ wrench
-            moved = self.add_up([*cut, *one.numbers], np.concatenate([vector, answer]))
-            motion = self.find_motion(one, moved, one.hold.gives @ answer)
-            there = rigid_motions(place.middle[None])[0] @ motion
-            columns.append(
-                [self.read(place.read(axis), moved) + there[k] for k, axis in enumerate(np.eye(3))]
-            )
-        return np.array(columns).T
+    def clamp_on(self, one: HeldFixture, faces: NDArray[np.int64], shares: Array) -> Array:
+        """How they move points (F, K, 3) of faces, by barycentric coordinates (K, 3)."""
+        values, motion = self.find_clamped(one)
+        points = self.body.surface.place_on(faces, shares)
+        rigid = (rigid_motions(points.reshape(-1, 3)) @ motion).reshape(points.shape)
+        return self.body.move_on(values, faces, shares) + rigid
 
-    def find_worst_give(
-        self, one: HeldFixture, loads: CutterLoads, places: list[LoadPatch], cuts: list[list[int]]
-    ) -> WorstGive:
+    def find_clamped(self, one: HeldFixture) -> tuple[Array, Array]:
+        """How the clamps of a fixture move the surface (S, 3), and what lays it against its locators (6,)."""
+        clamping = one.hold.clamping
+        motion = self.find_motion(one, one.numbers, clamping, np.zeros(len(one.hold.gives)))
+        return self.add_up(one.numbers, clamping), motion
+
+    def compute_compliance(self, one: HeldFixture, place: PressedPlace) -> Array:
+        """How a place moves (3, 4) under unit forces and a moment on it, with all that answers them."""
+        answers = one.hold.answers @ place.wrenches
+        numbers = [*place.cuts, *one.numbers]
+        factors = np.vstack([np.eye(4), answers])
+        motions = np.array(
+            [
+                self.find_motion(one, numbers, own, one.hold.gives @ answer)
+                for own, answer in zip(factors.T, answers.T, strict=True)
+            ]
+        ).T
+        rigid = rigid_motions(place.middle[None])[0]
+        return np.asarray(self.read(place.reads, numbers) @ factors + rigid @ motions)
+
+    def find_worst_give(self, one: HeldFixture, loads: CutterLoads, places: list[PressedPlace]) -> WorstGive:
         """Where a fixture gives most, and under what."""
-        matrices = [
-            self.compute_compliance(one, place, cut, np.eye(4))
-            for place, cut in zip(places, cuts, strict=True)
-        ]
+        matrices = [self.compute_compliance(one, place) for place in places]
         worst: WorstGive | None = None
         for number in range(len(loads)):
             place = int(loads.owner[number])
@@ -410,6 +488,8 @@ def find_cut_nodes(surface: Surface, faces: Sequence[int | str], workpiece: Work
     for face in faces:
         if isinstance(face, int):
             found |= upright & (measure_distances(segments[face], nodes[:, :2]) < ON_FACE)
+    if not found[surface.faces].all(axis=1).any():
+        raise InputError(f"nothing of {workpiece.name} lies on what is to be cut ({describe_faces(faces)}).")
     return found
 
 

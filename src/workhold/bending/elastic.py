@@ -1,13 +1,14 @@
 """A part as an elastic body that nothing holds: how its surface moves under forces, each set of them once solved.
 
-The displacement field u minimizes the energy of linear elasticity, with second-order tetrahedra. The body is free, so
-its stiffness matrix K is singular: its null space are the six rigid motions R. Each load f is balanced by forces that
-accelerate the whole body, f - M R (R'MR)⁻¹ R'f, M the mass matrix; in a sum of loads that balance by themselves these
-cancel. Six freedoms at three nodes are fixed, where no force flows then, K is factorized once, and the mean rigid
-motion is taken out of the answer. So the compliance C = P K⁻ P', P = 1 - R (R'MR)⁻¹ R'M, is symmetric and depends on
-none of the nodes that are fixed (inertia relief; T. J. R. Hughes, *The Finite Element Method*, 1987, for the rest).
+The displacement field u minimizes the energy of linear elasticity, with tetrahedra of the second order or the third. The
+body is free, so its stiffness matrix K is singular: its null space are the six rigid motions R. Each load f is balanced
+by forces that accelerate the body as if its mass were in the corners of the mesh, f - M R (R'MR)⁻¹ R'f, M that mass; in a
+sum of loads that balance by themselves these cancel, wherever the mass is. Springs hold six freedoms at three nodes; no
+force flows there then, however stiff they are. K with the springs is factorized once, and the mean rigid motion is taken
+out of the answer. So the compliance C = P K⁻ P', P = 1 - R (R'MR)⁻¹ R'M, is symmetric and depends on none of the nodes
+that are held (inertia relief; T. J. R. Hughes, *The Finite Element Method*, 1987, for the rest).
 
-Loads and readings are both sums of forces at points of the surface, written as the work they do on the nodes: what one
+Loads and readings are both sums of forces at points of the surface, written as the work they do on its unknowns: what one
 load moves another's points by is what the other moves the first one's by (Maxwell and Betti).
 """
 
@@ -24,18 +25,13 @@ from numpy.typing import NDArray
 
 from workhold.bending.library import load_elements
 from workhold.bending.materials import ElasticMaterial
-from workhold.bending.meshing import Surface
-from workhold.errors import InputError
+from workhold.bending.meshing import PartMesh
+from workhold.bending.surface import LATTICE, Footing, Surface
 
 __all__ = ["ElasticBody", "PointForces", "rigid_motions"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
-
-# How far beside a patch the triangles are looked for that its points lie on, in mm, at first.
-NEAR = 1.0
-# The least cosine between a patch's outward direction and a triangle's normal: the other side of a thin wall is another.
-ALIKE = 0.5
 
 
 @frozen(eq=False)
@@ -69,18 +65,17 @@ def rigid_motions(points: Array) -> Array:
     return np.stack([*shifts, *turns], axis=2)
 
 
-@frozen(eq=False)
-class Footing:
-    """Where points of the surface lie: in each a triangle and the weights of its six nodes.
+# Sums over all unknowns, without the library of NumPy that spreads small work over threads and waits for them.
 
-    Parameters
-    ----------
-    triangles : (M,) numbers.
-    weights : (M, 6).
-    """
 
-    triangles: IntArray
-    weights: Array
+def weigh(columns: Array, values: Array) -> Array:
+    """Each of some columns (n, 6) times values (n,)."""
+    return np.asarray(np.einsum("nk,n->k", columns, values))
+
+
+def combine(columns: Array, factors: Array) -> Array:
+    """The sum (n,) of columns (n, 6) times factors (6,)."""
+    return np.asarray(np.einsum("nk,k->n", columns, factors))
 
 
 @define(eq=False)
@@ -89,205 +84,144 @@ class ElasticBody:
 
     Parameters
     ----------
-    mesh : of NGSolve.
+    mesh : of the part.
     material : what it is of.
+    order : of its elements.
     """
 
-    mesh: Any
+    mesh: PartMesh
     material: ElasticMaterial
+    order: int = 2
     space: Any = field(init=False)
     scalar: Any = field(init=False)
-    bubble: float = field(init=False)
 
     def __attrs_post_init__(self) -> None:
         solving = load_elements().solving
-        self.space = solving.VectorH1(self.mesh, order=2)
-        self.scalar = solving.H1(self.mesh, order=2)
-        self.bubble = self.find_bubble()
+        self.space = solving.H1(self.mesh.made, order=self.order, dim=3)
+        self.scalar = solving.H1(self.mesh.made, order=self.order)
 
     @property
     def unknowns(self) -> int:
         """How many there are."""
-        return int(self.space.ndof)
+        return 3 * int(self.scalar.ndof)
 
     @property
     def elements(self) -> int:
         """How many tetrahedra there are."""
-        return int(self.mesh.ne)
+        return int(self.mesh.made.ne)
 
-    def find_bubble(self) -> float:
-        """Find what the shape function of an edge is over the product of its ends' coordinates."""
-        solving = load_elements().solving
-        probe = solving.GridFunction(self.scalar)
-        element = next(iter(self.scalar.Elements(solving.BND)))
-        probe.vec[element.dofs[3]] = 1.0
-        middles = solving.IntegrationRule([(0.5, 0.5), (0.5, 0.0), (0.0, 0.5)], [0.0] * 3)
-        values = np.array(probe(self.mesh.MapToAllElements(middles, solving.BND))).reshape(-1, 3)[0]
-        return float(4.0 * values[np.abs(values).argmax()])
-
-    @cached_property
+    @property
     def surface(self) -> Surface:
         """The surface with its nodes."""
-        return self.faces[0]
+        return self.mesh.surface
 
     @cached_property
-    def faces(self) -> tuple[Surface, IntArray, IntArray]:
-        """The surface, and of each of its nodes the unknown of a component, and the two corners of an edge's node.
-
-        Corners have themselves twice for the last.
-        """
+    def surface_unknowns(self) -> tuple[IntArray, IntArray]:
+        """The unknowns (S,) of a component that move the surface, and of each face its own (F, D), by number of these."""
         solving = load_elements().solving
-        rows: list[list[int]] = []
-        ends: dict[int, tuple[int, ...]] = {}
-        for element in self.scalar.Elements(solving.BND):
-            corners, edges = [v.nr for v in element.vertices], element.edges
-            unknown = dict(zip(corners, element.dofs[:3], strict=True))
-            middle = {}
-            for edge, number in zip(edges, element.dofs[3:], strict=True):
-                pair = frozenset(v.nr for v in self.mesh[edge].vertices)
-                middle[pair] = number
-                ends[number] = tuple(unknown[v] for v in sorted(pair))
-            pairs = (corners[:2], corners[1:], corners[::2])
-            rows.append([*element.dofs[:3], *(middle[frozenset(pair)] for pair in pairs)])
-        table = np.array(rows, np.int64)
-        points = [(1.0, 0.0), (0.0, 1.0), (0.0, 0.0), (0.5, 0.5), (0.0, 0.5), (0.5, 0.0)]
-        rule = solving.IntegrationRule(points, [0.0] * 6)
-        mapped = self.mesh.MapToAllElements(rule, solving.BND)
-        places = np.array(solving.CoefficientFunction((solving.x, solving.y, solving.z))(mapped)).reshape(
-            -1, 6, 3
-        )
-        facing = np.array(solving.specialcf.normal(3)(mapped)).reshape(-1, 6, 3).mean(axis=1)
-        facing /= np.linalg.norm(facing, axis=1)[:, None]
-        used, numbers = np.unique(table, return_inverse=True)
-        triangles = numbers.reshape(table.shape)
-        nodes = np.zeros((len(used), 3))
-        nodes[triangles.ravel()] = places.reshape(-1, 3)
-        a, b, c = np.moveaxis(nodes[triangles[:, :3]], 1, 0)
-        inward = (np.cross(b - a, c - a) * facing).sum(axis=1) < 0
-        triangles[inward] = triangles[inward][:, [0, 2, 1, 5, 4, 3]]
-        both = np.array([ends.get(number, (number, number)) for number in used.tolist()], np.int64)
-        return Surface(nodes, triangles, facing), used, both
+        rows = np.array([list(one.dofs) for one in self.scalar.Elements(solving.BND)], np.int64)
+        used, numbers = np.unique(rows, return_inverse=True)
+        return used, numbers.reshape(rows.shape)
 
-    def find_footing(self, forces: PointForces) -> Footing:
-        """Find the triangles that points lie on, and the weights of their nodes there."""
-        surface, points, near = self.surface, forces.points, NEAR
-        faces = (
-            np.ones(len(surface.triangles), np.bool_)
-            if forces.outward is None
-            else surface.normals @ forces.outward > ALIKE
+    def compute_shapes(self, footing: Footing) -> Array:
+        """The shape functions (M, D) of their faces at some points."""
+        solving = load_elements().solving
+        shares, faces = footing.shares, footing.faces.tolist()
+        own = {face: self.scalar.GetFE(solving.ElementId(solving.BND, face)) for face in set(faces)}
+        shares = np.where(
+            self.mesh.surface.is_turned[footing.faces][:, None], shares[:, [0, 2, 1]], footing.shares
         )
-        corners = surface.nodes[surface.triangles[:, :3]]
-        low, high = corners.min(axis=1), corners.max(axis=1)
-        while True:
-            beside = (high >= points.min(axis=0) - near).all(axis=1) & (low <= points.max(axis=0) + near).all(
-                axis=1
-            )
-            chosen = np.flatnonzero(faces & beside)
-            if len(chosen):
-                break
-            near *= 2.0
-            if near > 1e6:
-                raise InputError(
-                    "a contact lies on no face of the part that is meshed: give the STEP file or the thickness that belongs "
-                    "to the result."
-                )
-        shares, distances = project_onto(points, corners[chosen])
-        nearest = distances.argmin(axis=1)
-        at = shares[np.arange(len(points)), nearest]
-        a, b, c = at.T
-        weights = np.stack(
-            [a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * a * c], axis=1
-        )
-        return Footing(chosen[nearest], weights)
+        values = [own[face].CalcShape(x, y) for face, (x, y, _) in zip(faces, shares.tolist(), strict=True)]
+        return np.array(values, np.float64).reshape(len(faces), -1)
 
-    def spread(self, forces: PointForces) -> Array:
-        """The work (N, 3) that forces do on each node of the surface."""
-        footing = self.find_footing(forces)
-        work = np.zeros((len(self.surface.nodes), 3))
-        for k in range(6):
-            np.add.at(
-                work,
-                self.surface.triangles[footing.triangles, k],
-                footing.weights[:, k, None] * forces.forces,
-            )
-        return work
-
-    def respond(self, works: Sequence[Array]) -> Array:
-        """How nodes of the surface move (L, N, 3) in mm under loads, each by itself; none turns or shifts the body.
+    def spread(self, forces: PointForces, footing: Footing | None = None) -> Array:
+        """The work (S, 3) that forces do on each unknown of the surface.
 
         Parameters
         ----------
-        works : of each load the work (N, 3) on the nodes, see :meth:`spread`.
+        footing : where they act; looked for if None.
         """
-        count, nodes = self.scalar.ndof, len(self.surface.nodes)
-        out = np.empty((len(works), nodes, 3))
-        _, used, both = self.faces
+        if footing is None:
+            footing = self.surface.find_footing(forces.points, forces.outward)
+        used, table = self.surface_unknowns
+        work = np.zeros((len(used), 3))
+        shapes = self.compute_shapes(footing)
+        np.add.at(work, table[footing.faces], shapes[:, :, None] * forces.forces[:, None])
+        return work
+
+    def move_nodes(self, values: Array) -> Array:
+        """How the nodes of the surface move (N, 3), by the values (S, 3) of its unknowns."""
+        faces = self.surface.faces
+        moved = np.empty((len(self.surface.nodes), 3))
+        moved[faces.ravel()] = self.move_on(values, np.arange(len(faces)), LATTICE).reshape(-1, 3)
+        return moved
+
+    def move_on(self, values: Array, faces: IntArray, shares: Array) -> Array:
+        """How points of faces move (F, K, 3), by barycentric coordinates (K, 3), the same of each face."""
+        _, table = self.surface_unknowns
+        kinds, first, own = self.kinds_of_faces
+        there = np.tile(shares, (len(kinds), 1)), np.repeat(first, len(shares))
+        shapes = self.compute_shapes(Footing(there[1], there[0])).reshape(len(kinds), len(shares), -1)
+        return np.asarray(np.einsum("fkd,fdx->fkx", shapes[own[faces]], values[table[faces]]))
+
+    @cached_property
+    def kinds_of_faces(self) -> tuple[IntArray, IntArray, IntArray]:
+        """The kinds of faces by their shape functions, a face of each, and of each face (F,) its kind.
+
+        Shape functions depend on which corners of a face have the higher numbers alone.
+        """
+        surface = self.surface
+        order = np.column_stack([surface.vertices.argsort(axis=1), surface.is_turned])
+        kinds, first, own = np.unique(order, axis=0, return_index=True, return_inverse=True)
+        return kinds, first, own.ravel()
+
+    def respond(self, works: Sequence[Array]) -> Array:
+        """How the surface moves under loads, each by itself: the values (L, S, 3) of its unknowns, in mm.
+
+        Parameters
+        ----------
+        works : of each load the work (S, 3) on the unknowns of the surface, see :meth:`spread`.
+        """
+        used, _ = self.surface_unknowns
         solver, load, answer = self.factorized
+        motions, weighted, turning = self.motions
+        out = np.empty((len(works), len(used), 3))
         for place, work in enumerate(works):
-            full = np.zeros((3, count))
-            is_edge = both[:, 0] != both[:, 1]
-            # A node's value is half of its ends' sum and a quarter of the edge's own unknown times the bubble.
-            full[:, used[~is_edge]] = work[~is_edge].T
-            full[:, used[is_edge]] = work[is_edge].T * (self.bubble / 4.0)
-            for end in range(2):
-                np.add.at(full.T, both[is_edge, end], 0.5 * work[is_edge])
+            full = np.zeros((int(self.scalar.ndof), 3))
+            full[used] = work
             flat = full.reshape(-1)
-            flat = flat - self.weighted @ (self.turning @ (self.motions.T @ flat))
-            load.FV().NumPy()[:] = flat
+            load.FV().NumPy()[:] = flat - combine(weighted, turning @ weigh(motions, flat))
             answer.data = solver * load
-            moved = answer.FV().NumPy().copy()
-            moved -= self.motions @ (self.turning @ (self.weighted.T @ moved))
-            field_ = moved.reshape(3, count).T
-            values = field_[used]
-            values[is_edge] = (
-                0.5 * (field_[both[is_edge, 0]] + field_[both[is_edge, 1]])
-                + self.bubble / 4.0 * field_[used[is_edge]]
-            )
-            out[place] = values
+            moved = answer.FV().NumPy()
+            moved = moved - combine(motions, turning @ weigh(weighted, moved))
+            out[place] = moved.reshape(-1, 3)[used]
         return out
 
     @cached_property
-    def motions(self) -> Array:
-        """Rigid motions about the middle of the box (3 n, 6), as unknowns."""
+    def motions(self) -> tuple[Array, Array, Array]:
+        """Rigid motions R about the middle of the box (3 n, 6) as unknowns, M R, and the inverse of R'MR."""
         solving = load_elements().solving
-        low = self.surface.nodes.min(axis=0)
-        high = self.surface.nodes.max(axis=0)
+        nodes = self.surface.nodes
         x, y, z = (
             axis - float(middle)
-            for axis, middle in zip((solving.x, solving.y, solving.z), (low + high) / 2, strict=True)
+            for axis, middle in zip(
+                (solving.x, solving.y, solving.z), (nodes.min(axis=0) + nodes.max(axis=0)) / 2, strict=True
+            )
         )
-        fields = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (0, -z, y), (z, 0, -x), (-y, x, 0)]
         probe = solving.GridFunction(self.space)
-        columns = []
-        for parts in fields:
-            probe.Set(solving.CoefficientFunction(parts))
-            columns.append(probe.vec.FV().NumPy().copy())
-        return np.stack(columns, axis=1)
-
-    @cached_property
-    def weighted(self) -> Array:
-        """Mass times the rigid motions (3 n, 6)."""
-        solving = load_elements().solving
-        u, v = self.space.TnT()
-        mass = solving.BilinearForm(self.space, symmetric=True)
-        mass += u * v * solving.dx
-        mass.Assemble()
-        given, taken = mass.mat.CreateColVector(), mass.mat.CreateColVector()
-        columns = []
-        for column in self.motions.T:
-            given.FV().NumPy()[:] = column
-            taken.data = mass.mat * given
-            columns.append(taken.FV().NumPy().copy())
-        return np.stack(columns, axis=1)
-
-    @cached_property
-    def turning(self) -> Array:
-        """The inverse (6, 6) of the body's inertia."""
-        return np.asarray(np.linalg.inv(self.motions.T @ self.weighted), np.float64)
+        probe.Set(solving.CoefficientFunction((x, y, z)))
+        places = probe.vec.FV().NumPy().reshape(-1, 3).copy()
+        # The first unknowns are those of corners; a constant field has no others.
+        is_corner = np.arange(len(places)) < int(self.mesh.made.nv)
+        motions = rigid_motions(places)
+        motions[:, :, :3] *= is_corner[:, None, None]
+        motions = motions.reshape(-1, 6)
+        weighted = motions * np.repeat(is_corner, 3)[:, None]
+        return motions, weighted, np.asarray(np.linalg.inv(motions.T @ weighted), np.float64)
 
     @cached_property
     def factorized(self) -> tuple[Any, Any, Any]:
-        """The stiffness matrix without six freedoms, factorized, with room for a load and an answer."""
+        """The stiffness matrix with springs at six freedoms, factorized, with room for a load and an answer."""
         solving = load_elements().solving
         modulus, ratio = self.material.elastic_modulus, self.material.poisson
         shear = modulus / (2 * (1 + ratio))
@@ -299,18 +233,22 @@ class ElasticBody:
             2 * shear * solving.InnerProduct(strain, tested)
             + volume * solving.Trace(strain) * solving.Trace(tested)
         ) * solving.dx
-        form.Assemble()
-        free = self.space.FreeDofs()
-        for number in self.choose_fixed():
-            free.Clear(number)
-        solver = form.mat.Inverse(free, inverse="sparsecholesky")
-        return solver, form.mat.CreateColVector(), form.mat.CreateColVector()
+        matrix = form.Assemble().mat
+        for number, axis in self.choose_held():
+            block = matrix[number, number]
+            entries = block.NumPy()
+            entries[axis, axis] *= 2.0
+            matrix[number, number] = block
+        solver = matrix.Inverse(self.space.FreeDofs(), inverse="sparsecholesky")
+        return solver, matrix.CreateColVector(), matrix.CreateColVector()
 
-    def choose_fixed(self) -> list[int]:
-        """Choose six unknowns at three corners of the mesh that leave the body no motion, far from each other."""
-        _, used, both = self.faces
-        corners = np.flatnonzero(both[:, 0] == both[:, 1])
-        points = self.surface.nodes[corners]
+    def choose_held(self) -> list[tuple[int, int]]:
+        """Choose six freedoms at three corners of the mesh that leave the body no motion, far from each other.
+
+        Each is the number of a corner and an axis.
+        """
+        vertices, at = np.unique(self.surface.vertices.ravel(), return_index=True)
+        points = self.surface.corners.reshape(-1, 3)[at]
         first = int(np.linalg.norm(points - points.mean(axis=0), axis=1).argmax())
         second = int(np.linalg.norm(points - points[first], axis=1).argmax())
         along = points[second] - points[first]
@@ -322,35 +260,5 @@ class ElasticBody:
             for left, last in product(range(3), repeat=2)
         ]
         best = min(choices, key=lambda chosen: np.linalg.cond([rows[node, axis] for node, axis in chosen]))
-        nodes, count = (first, second, third), self.scalar.ndof
-        return [int(used[corners[nodes[node]]]) + axis * count for node, axis in best]
-
-
-def project_onto(points: Array, corners: Array) -> tuple[Array, Array]:
-    """The nearest points of triangles to points: shares of the corners (M, T, 3), and squared distances (M, T).
-
-    Points are (M, 3), corners (T, 3, 3), in mm. What lies beside a triangle is laid on the nearest of its sides.
-    """
-    a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
-    ab, ac = b - a, c - a
-    d00, d01, d11 = (ab * ab).sum(axis=1), (ab * ac).sum(axis=1), (ac * ac).sum(axis=1)
-    from_a = points[:, None] - a
-    d20, d21 = np.einsum("mtk,tk->mt", from_a, ab), np.einsum("mtk,tk->mt", from_a, ac)
-    area = d00 * d11 - d01 * d01
-    second, third = (d11 * d20 - d01 * d21) / area, (d00 * d21 - d01 * d20) / area
-    shares = np.stack([1.0 - second - third, second, third], axis=2)
-    outside = (shares < 0.0).any(axis=2)
-    if outside.any():
-        best = np.full(outside.shape, np.inf)
-        for first, last in ((0, 1), (1, 2), (2, 0)):
-            start, side = corners[:, first], corners[:, last] - corners[:, first]
-            from_start = points[:, None] - start
-            along = np.clip(np.einsum("mtk,tk->mt", from_start, side) / (side * side).sum(axis=1), 0.0, 1.0)
-            away = ((from_start - along[..., None] * side) ** 2).sum(axis=2)
-            nearer = outside & (away < best)
-            best[nearer] = away[nearer]
-            clipped = np.zeros_like(shares)
-            clipped[..., first], clipped[..., last] = 1.0 - along, along
-            shares[nearer] = clipped[nearer]
-    there = np.einsum("mtc,tck->mtk", shares, corners)
-    return shares, ((points[:, None] - there) ** 2).sum(axis=2)
+        nodes = (first, second, third)
+        return [(int(vertices[nodes[node]]), axis) for node, axis in best]

@@ -9,7 +9,7 @@ from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.bending.materials import ElasticMaterial
-from workhold.bending.meshing import Surface
+from workhold.bending.surface import Surface
 from workhold.errors import InputError
 from workhold.model.quality import Figure
 from workhold.units import Unit
@@ -56,8 +56,8 @@ class BentPlace:
 
     Parameters
     ----------
-    value : in mm, on the refined mesh.
-    error : twice as far as the value on the mesh before it was refined is from it, in mm.
+    value : in mm, with elements of the third order.
+    error : twice the change of the movement there from the second order to the third, in mm.
     at : where it is, in mm in the part's coordinates.
     line, tool : of the program, where a cut makes it; None for others.
     load : number of the load that makes it, from 1; None for others.
@@ -104,9 +104,9 @@ class Bending:
     is_stated : whether nobody said how hard the jaws press, so that all is for each kN.
     clamp_distortion : by clamping alone, where the part is laid against its locators as if it were stiff.
     give : at the cutter, or where a load acts, with the pegs that bend; None where nothing acts.
-    elements : how many tetrahedra the refined mesh has.
+    elements : how many tetrahedra the mesh has.
     faces : what of the part is to be cut, in words; None for all of it.
-    surface : of the refined mesh, in the part's coordinates.
+    surface : of the mesh, in the part's coordinates.
     moved : (N, 3) how far clamping moves each of its nodes, in mm.
     pressed : (N,) whether something presses there, so that the dent is not counted.
     """

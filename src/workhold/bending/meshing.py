@@ -1,55 +1,55 @@
-"""Meshes of second-order tetrahedra, coarse enough for a list of fixtures, and refined once to judge them by."""
+"""Meshes of tetrahedra that follow round faces, coarse enough for a list of fixtures."""
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from attrs import frozen
-from numpy.typing import NDArray
+from attrs import define
 
 from workhold.bending.library import load_elements
 from workhold.bending.shape import PartToBend
+from workhold.bending.surface import Surface, find_surface
 from workhold.errors import InputError
 
-__all__ = ["Surface", "make_mesh", "refine_mesh"]
+__all__ = ["PartMesh", "curve", "make_mesh"]
 
-Array = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-# Tetrahedra that a part is filled with, about, where its own shape does not ask for more. With the mesh refined, each
-# of them becomes eight.
+# Tetrahedra that a part is filled with, about, where its own shape does not ask for more.
 TETRAHEDRA = 1000
 # The volume of a tetrahedron over the cube of the size that the mesher is given, as it fills a plate.
 SHARE = 0.17
-# Beyond this the refined mesh would take minutes.
-MOST_TETRAHEDRA = 6_000
+# Beyond this elements of the third order would take minutes.
+MOST_TETRAHEDRA = 12_000
 # How fast elements grow away from small ones, and how many fit on the radius of a round face: elements are curved, so that
-# one for each radian follows it well.
-GRADING, ROUND = 0.8, 1.0
+# one for each radian follows it well. The second ones, which are the mesher's own, are for parts that it fails on so.
+FEW = {"grading": 0.8, "curvaturesafety": 1.0}
+MORE = {"grading": 0.3, "curvaturesafety": 2.0}
+# The mesher's rounds of making elements better; its threads wait for each other for longer than they work.
+COMMON = {"optsteps3d": 2, "parallel_meshing": False}
 # Sizes of elements are no larger than this many times a part's least extent: a plate then bends by its true
 # stiffness with one second-order element over its thickness.
 OF_LEAST_EXTENT = 2.0
 
 
-@frozen(eq=False)
-class Surface:
-    """The surface of a mesh: triangles of six nodes.
+@define(eq=False)
+class PartMesh:
+    """A mesh of a part, whose elements follow round faces.
 
     Parameters
     ----------
-    nodes : (N, 3) where corners and middles of edges lie, in mm.
-    triangles : (T, 6) numbers of nodes: three corners, counter-clockwise from outside, then the middles of the edges
-        between the first two, the last two, and the last and the first.
-    normals : (T, 3) unit vectors outward.
+    made : by the library.
     """
 
-    nodes: Array
-    triangles: IntArray
-    normals: Array
+    made: Any
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Its surface."""
+        return find_surface(self.made)
 
 
-def make_mesh(part: PartToBend) -> Any:
+def make_mesh(part: PartToBend) -> PartMesh:
     """Mesh a part.
 
     Raises
@@ -63,11 +63,7 @@ def make_mesh(part: PartToBend) -> Any:
         size = min(
             (shape.mass / (SHARE * TETRAHEDRA)) ** (1 / 3), OF_LEAST_EXTENT * float((high - low).min())
         )
-        mesh = (
-            load_elements()
-            .shapes.OCCGeometry(shape)
-            .GenerateMesh(maxh=size, optsteps3d=2, grading=GRADING, curvaturesafety=ROUND)
-        )
+        mesh = fill(shape, size)
     except RuntimeError as error:
         raise InputError(
             "the part cannot be meshed, so it is not known how far it bends: repair its solid in the CAD program."
@@ -82,15 +78,17 @@ def make_mesh(part: PartToBend) -> Any:
     return curve(mesh)
 
 
-def refine_mesh(mesh: Any) -> Any:
-    """Cut each element of a mesh into eight."""
-    fine = mesh.ngmesh.Copy()
-    fine.Refine()
-    return curve(fine)
+def fill(shape: Any, size: float) -> Any:
+    """Fill a shape with tetrahedra of a size in mm at most: with few, or with more where few cannot be fitted."""
+    whole = load_elements().shapes.OCCGeometry(shape)
+    try:
+        return whole.GenerateMesh(maxh=size, **COMMON, **FEW)
+    except RuntimeError:
+        return whole.GenerateMesh(maxh=size, **COMMON, **MORE)
 
 
-def curve(mesh: Any) -> Any:
-    """A mesh for the solver, whose elements follow round faces."""
+def curve(mesh: Any) -> PartMesh:
+    """A mesh for the solver."""
     made = load_elements().solving.Mesh(mesh)
     made.Curve(2)
-    return made
+    return PartMesh(made)
