@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from workhold import Workpiece
+from workhold import InputError, Workpiece
 from workhold.bending.elastic import ElasticBody, PointForces
+from workhold.bending.library import load_elements
 from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import PartMesh, curve, make_mesh
 from workhold.bending.shape import PrismShape
@@ -19,6 +20,17 @@ Array = NDArray[np.float64]
 MODULUS, RATIO = 70_000.0, 0.33
 METAL = ElasticMaterial("metal", MODULUS, RATIO, 2700.0)
 UP = np.array([0.0, 0.0, 1.0])
+
+
+def need_elements() -> None:
+    """Skip a module where the library is not installed, and load it else as the program does.
+
+    Loaded before the reader of STEP files, as ``importorskip`` would, it ends the process with a crash.
+    """
+    try:
+        load_elements()
+    except InputError:
+        pytest.skip("the extra 'bending' is not installed", allow_module_level=True)
 
 
 def block(length: float, width: float) -> Workpiece:
@@ -36,7 +48,6 @@ def bodies(
     make: Callable[..., Workpiece], sizes: tuple[float, ...], thickness: float
 ) -> tuple[ElasticBody, ElasticBody]:
     """A part of metal, meshed, and refined once."""
-    pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
     mesh = make_mesh(PrismShape(make(*sizes), thickness))
     return ElasticBody(mesh, METAL), ElasticBody(refine_mesh(mesh), METAL)
 

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from typer.testing import CliRunner, Result
 
 import workhold
+from bent_bodies import need_elements
 from workhold import Load
 from workhold.bending import meshing
 from workhold.cli.main import app
 
-pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
+need_elements()
 
 
 @pytest.fixture(autouse=True)

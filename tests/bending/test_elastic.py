@@ -19,6 +19,7 @@ from bent_bodies import (
     bodies,
     even,
     moved,
+    need_elements,
     over,
     ring,
     shared,
@@ -31,7 +32,7 @@ from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
 from workhold.bending.shape import PrismShape
 
-pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
+need_elements()
 
 SHEAR = MODULUS / (2 * (1 + RATIO))
 FORCE = 100.0

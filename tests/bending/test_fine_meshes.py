@@ -5,13 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-
-pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
-
 from step_shapes import write_step
 
 import workhold
-from bent_bodies import refine_mesh
+from bent_bodies import need_elements, refine_mesh
 from bent_solids import SOLIDS
 from workhold import Load, Result
 from workhold.bending import asking
@@ -21,6 +18,8 @@ from workhold.bending.materials import find_material
 from workhold.bending.meshing import make_mesh
 from workhold.presenting.assembly import read_part_shape
 from workhold.presenting.bent import make_shape_to_bend
+
+need_elements()
 
 VISE = workhold.Vise(pitch=10, columns=4, peg_radius=3)
 FORCE, BEST = 3000.0, 20

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import workhold
-from bent_bodies import METAL, MODULUS, RATIO, refine_mesh
+from bent_bodies import METAL, MODULUS, RATIO, need_elements, refine_mesh
 from workhold import InputError, Load, Result
 from workhold.bending import asking, library, meshing
 from workhold.bending.asking import BendingQuestion, SolvedLoads, UnitLoads, find_bendings, measure_distances
@@ -23,7 +23,7 @@ from workhold.bending.shape import PrismShape
 from workhold.statics.pins import compute_deflections
 from workhold.units import INCH, MILLIMETRE
 
-pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
+need_elements()
 
 HIGH = 12.0
 

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-pytest.importorskip("ngsolve")
 pytest.importorskip("OCP")
+pytest.importorskip("ngsolve")
 
 MESH = "from workhold.bending.library import load_elements; load_elements()"
 READ = "from OCP.gp import gp_Pnt; from OCP.STEPControl import STEPControl_Reader"

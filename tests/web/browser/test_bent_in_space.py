@@ -9,7 +9,9 @@ import pytest
 from running_server import RunningServer
 from walking import Walk
 
-pytest.importorskip("ngsolve", reason="the extra 'bending' is not installed")
+from bent_bodies import need_elements
+
+need_elements()
 
 COLOURS = """async () => {
   const { view } = await import("/static/space-dialog.js");
