@@ -41,6 +41,7 @@ VALUES: dict[str, tuple[Any, Any]] = {
     "straps": (3, "3"),
     "tip_radius": (6.5, "6.5"),
     "reach": ((22.0, 43.0), "22,43"),
+    "strap_height": (31.0, "31"),
     "over": ("supports", "supports"),
     "bolt_pitch": ((8.0, 9.0), "8,9"),
     "bolt_offset": ((3.25, 1.75), "3.25,1.75"),

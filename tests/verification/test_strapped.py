@@ -1,11 +1,12 @@
 """A verification derives seats under straps, their push and the force, and sees a fault in each rule."""
 
 import json
+from math import cos, radians, sin
 
 import pytest
 
 import workhold
-from workhold import Load, Restrictions, StrapPlate, Workpiece, circle_zone
+from workhold import Load, Program, Restrictions, StrapPlate, Workpiece, circle_zone
 from workhold.verification import verify, verify_file
 
 BLOCK = Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
@@ -194,6 +195,90 @@ def test_a_fault_over_supports_is_seen(raised, tmp_path, fault):
     path.write_text(json.dumps(data))
     outcome = verify_file(path)
     assert not outcome.holds and [one.index for one in outcome.unproven] == [0], outcome
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory):
+    """A pocket in the middle of the block, and one of its corners cut off."""
+    folder = tmp_path_factory.mktemp("pocket")
+    (folder / "p.nc").write_text(
+        "G21 G90\nG0 X30. Y20. Z70.\nT1 M6\nZ5.\nG1 Z-3. F200\nX70. F600\nG3 X70. Y40. J10.\nG1 X30.\nY20.\nG0 Z70.\n"
+        "X104. Y64.\nZ2.\nG1 Z-14.\nX90.\nG0 Z70.\nM30\n"
+    )
+    (folder / "tools.toml").write_text(
+        "tool.1 = {diameter = 10, flute_length = 30, stickout = 40, holder_diameter = 40, cutting_force = 180}\n"
+    )
+    return Program.read(folder / "p.nc", folder / "tools.toml", thickness=25, start=(30, 20, 70))
+
+
+@pytest.fixture(scope="module", params=["plate", "supports"])
+def cut(request, program):
+    plate = StrapPlate(20, 3, 8, 6, over=request.param, supports={"pad_radius": 5, "height": 12})
+    asked = {"program": program, "peg_height": 15, "weight": 12.0, "strapped": 2, "best": 400}
+    return workhold.design(BLOCK, plate, thickness=25, loads=LOADS[:1], **asked)
+
+
+def test_a_program_is_passed_by_locators_and_straps_and_held(cut, tmp_path):
+    """The walk along its moves, and loads of its tools, show it in another way."""
+    outcome = verify(cut)
+    assert outcome.holds and outcome.proven == outcome.fixtures > 50, outcome.unproven[:2] or outcome.faults
+    hold = cut[0].hold
+    assert hold.program_need.force and hold.clamp_needed == max(hold.needs)
+    assert cut.found["strapped"] < 2036
+    workhold.save(cut, tmp_path / "cut.json")
+    workhold.save(workhold.open(tmp_path / "cut.json"), tmp_path / "again.json")
+    assert (tmp_path / "cut.json").read_bytes() == (tmp_path / "again.json").read_bytes()
+
+
+def move_strap_into_the_cut(fixture):
+    """Its tip stands over the pocket's border."""
+    turn, pose = radians(fixture["pose"]["theta_deg"]), fixture["pose"]
+    x, y = 50.0, 20.0
+    at = [pose["x"] + cos(turn) * x - sin(turn) * y, pose["y"] + sin(turn) * x + cos(turn) * y]
+    fixture["straps"][0]["at"] = at
+
+
+def ask_less_for_the_program(fixture):
+    fixture["program_force"]["force"] *= 0.97
+
+
+def name_another_line(fixture):
+    fixture["program_force"]["line"] = 5
+
+
+def leave_program_out(fixture):
+    del fixture["program_force"]
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        (move_strap_into_the_cut, "brings a tool within"),
+        (ask_less_for_the_program, "the program asks for"),
+        (name_another_line, "line 5"),
+        (leave_program_out, "force of the straps of its program is missing"),
+    ],
+    ids=lambda one: getattr(one, "__name__", ""),
+)
+def test_a_fault_with_a_program_is_seen(cut, tmp_path, fault, words):
+    workhold.save(cut, tmp_path / "cut.json")
+    data = json.loads((tmp_path / "cut.json").read_text())
+    fault(data["fixtures"][0])
+    (tmp_path / "faulty.json").write_text(json.dumps(data))
+    outcome = verify_file(tmp_path / "faulty.json")
+    assert [one.index for one in outcome.unproven] == [0] and words in str(outcome.unproven[0].reason)
+
+
+def test_lower_straps_find_more_places_beside_a_program(program):
+    """Rapid moves 70 mm above the part are in the way of straps that reach so high."""
+    counts = []
+    for height in (1.0, 36.0, 200.0):
+        plate = StrapPlate(20, 3, 8, 6, strap_height=height)
+        asked = {"program": program, "peg_height": 15, "strapped": 1, "best": 3000}
+        result = workhold.design(BLOCK, plate, thickness=25, **asked)
+        (hold,) = (one for one in result.holds if one.is_looked_at)
+        counts.append(hold.places)
+    assert counts[0] >= counts[1] > counts[2]
 
 
 def test_a_seat_listed_twice_and_a_wrong_order_are_seen(written, tmp_path):

@@ -23,7 +23,7 @@ def strap_table(result: Result, entries: Entries, count: int, unit: Unit) -> Tab
 
     straps = result.toolkit.strap_set
     assert straps is not None
-    short, has_loads = unit.abbreviation, bool(result.query.loads)
+    short, has_loads = unit.abbreviation, result.query.is_loaded
     needs = (f">each strap {unit.force}", "bolts in") if has_loads else ()
     columns = (
         ">rank",
@@ -68,7 +68,7 @@ def first_strap_sentence(result: Result, unit: Unit) -> str:
 
     looked_at = sum(isinstance(hold, StrappedHold) and hold.is_looked_at for hold in result.holds)
     said = f"All seats are listed; a push by hand was looked for at {looked_at} of them"
-    if not result.query.loads:
+    if not result.query.is_loaded:
         return f"{said}."
     places = "straps, the best of a finite set of places, too"
     return f"{said}, and {places}. {reckoned_with(question_of(result.query))}"
@@ -78,7 +78,13 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
     """Say how to set up one seat with its straps, with lengths in a unit, and what each load asks for."""
     from workhold.model.straps import StrappedHold
     from workhold.supports.straps import question_of
-    from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings, reckoned_with
+    from workhold.supports.words_of_straps import (
+        describe_program_need,
+        list_remarks,
+        list_steps,
+        list_warnings,
+        reckoned_with,
+    )
 
     hold, query = fixture.hold, fixture.listing.result.query
     assert isinstance(hold, StrappedHold)
@@ -107,6 +113,9 @@ def strapped_fixture_tables(fixture: Fixture, rank: int, total: int, unit: Unit)
             (load.name for load in query.loads), hold.clamp_needed_each, "force of each strap", unit
         )
         tables += ["", reckoned_with(asked), needs]
+    if hold.program_need is not None and query.program is not None:
+        tables += ["", describe_program_need(hold.program_need, query.program, unit)]
+        tables += [] if hold.clamp_needed_each else [reckoned_with(asked)]
     quality = fixture.quality
     error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))
     tables.append(f"Location error {error}; nearest edge {edge}.")

@@ -49,6 +49,7 @@ __all__ = [
     "path_of",
     "bound_spans",
     "find_swept_below",
+    "find_swept_between",
     "find_swept_beside_carrier",
     "find_swept_at_pegs",
 ]
@@ -105,9 +106,14 @@ class Swept:
     @classmethod
     def below(cls, program: Program, height: float) -> Swept:
         """The spans of what a program sweeps at heights up to one in mm."""
+        return cls.within(program, -inf, height)
+
+    @classmethod
+    def within(cls, program: Program, low: float, high: float) -> Swept:
+        """The spans of what a program sweeps between two heights in mm."""
         if program.boxed().any():
-            return cls.of(program.iter_swept(-inf, height))
-        one = program.arrays_of(*program.pairs(), -inf, height)
+            return cls.of(program.iter_swept(low, high))
+        one = program.arrays_of(*program.pairs(), low, high)
         rows = np.column_stack([one.start, one.end, one.bulge, one.cylinder[:, 2]])
         named = np.column_stack([one.line, one.tool])
         return cls.of_spans(rows, named, np.zeros((0, 4)), np.zeros(0, np.int64))
@@ -358,4 +364,4 @@ def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carr
 @lru_cache(maxsize=16)
 def find_swept_between(program: Program, low: float, high: float) -> Swept:
     """What a program sweeps between two heights in mm."""
-    return Swept.of(program.iter_swept(low, high))
+    return Swept.within(program, low, high)

@@ -211,8 +211,9 @@ def list_tools_above_pegs(path: PlannedPath) -> list[str]:
 def describe_clearance(path: PlannedPath, lengths: LengthUnit) -> str:
     near = path.passing
     if path.peg_height is None:
-        # Flat jaws: that all tools keep clear of them is asked of each set-up.
-        return f"All tools keep {lengths.format_length(path.program.clearance)} or more from both jaws."
+        # That all tools keep clear of what friction holds with is asked of each set-up.
+        held_by = "locators and straps" if path.fixture.pegs else "both jaws"
+        return f"All tools keep {lengths.format_length(path.program.clearance)} or more from {held_by}."
     if near is None or near.distance == inf:
         return "No tool comes down to where anything holds the part."
     where = (

@@ -9,7 +9,13 @@ from workhold.model.fixture import Fixture
 from workhold.model.hold_words import set_force
 from workhold.model.straps import StrappedHold
 from workhold.supports.straps import StrapQuestion, question_of
-from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings, reckoned_with
+from workhold.supports.words_of_straps import (
+    describe_program_need,
+    list_remarks,
+    list_steps,
+    list_warnings,
+    reckoned_with,
+)
 
 __all__ = ["draw_strap_panel", "strap_writers"]
 
@@ -36,7 +42,8 @@ def draw_strap_panel(column: TextColumn, fixture: Fixture, lengths: LengthUnit) 
     write_push(column, hold, lengths)
     for sentence in list_warnings(hold, fixture, asked, lengths.unit):
         column.write_item("▲", f"{sentence[:1].upper()}{sentence[1:]}", 12.5)
-    if hold.clamp_needed_each:
+    write_program_need(column, fixture, lengths, 11.5)
+    if hold.needs:
         column.write_paragraph(reckoned_with(asked), 11.5, fill=GREY)
     column.draw_rule()
 
@@ -48,13 +55,21 @@ def write_force_needed(column: TextColumn, hold: StrappedHold, lengths: LengthUn
         column.write_line("Force of each strap at its tip", 13, fill=GREY, gap=0.8)
         words = f"{unit.format_force(set_force(hold.clamp_needed))} or more"
         column.write_line(words, size, bold=True, gap=0.4)
-    elif hold.clamp_needed_each:
+    elif hold.needs:
         column.write_line("No force of the straps holds all loads", 15, bold=True, gap=0.6)
     if hold.slip_reserve is not None:
         column.write_fact(
             "A strap is rated for",
             f"{unit.format_force(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that",
         )
+
+
+def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit, size: float) -> None:
+    """Writes what the tools of the program ask of each strap, where they do."""
+    hold, _ = hold_of(fixture)
+    program = fixture.listing.result.query.program
+    if hold.program_need is not None and program is not None:
+        column.write_paragraph(describe_program_need(hold.program_need, program, lengths.unit), size)
 
 
 def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> None:
@@ -107,10 +122,11 @@ def write_straps(column: TextColumn, sheet: Sheet) -> None:
 
 def write_strap_force(column: TextColumn, sheet: Sheet) -> None:
     hold, asked = hold_of(sheet.fixture)
-    if not hold.clamp_needed_each:
+    if not hold.needs:
         return
     write_heading(column, "Force")
     write_force_needed(column, hold, sheet.lengths, 20)
+    write_program_need(column, sheet.fixture, sheet.lengths, NOTE)
     column.write_paragraph("The bolt carries more than the tip: the heel takes its share.", NOTE)
     column.write_paragraph(reckoned_with(asked), NOTE)
 

@@ -407,6 +407,17 @@ STRAP_REACH = ToolkitField(
     least="0",
     belongs_to="straps",
 )
+STRAP_HEIGHT = ToolkitField(
+    "strap_height",
+    "length",
+    "How high a strap stands above the face that it presses on, with nut and stud, for the tools of a program; six radii "
+    "of its tip if not given.",
+    (PageLabel("Strap above its face", "6 tip radii"),),
+    figure="height of a strap above its face",
+    unset="six radii of the tip",
+    least="above 0",
+    belongs_to="straps",
+)
 STRAPS_OVER = ToolkitField(
     "over",
     "choice",
@@ -483,6 +494,7 @@ OPTIONS = (
     STRAPS,
     TIP_RADIUS,
     STRAP_REACH,
+    STRAP_HEIGHT,
     STRAPS_OVER,
     BOLT_PITCH,
     BOLT_OFFSET,

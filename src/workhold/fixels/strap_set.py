@@ -21,6 +21,7 @@ class StrapSet:
     max_force : that a strap is rated for, in N; None where nobody says.
     bolts : the lattice of holes for bolts; the plate itself where the dowels' own holes take them.
     over : what the part lies on under the tips, "plate" or "supports".
+    standout : how high a strap stands above the face that it presses on, with nut and stud.
     """
 
     count: int
@@ -28,7 +29,8 @@ class StrapSet:
     reach: tuple[float, float]
     max_force: float | None
     bolts: Carrier
-    over: str = "plate"
+    over: str
+    standout: float
 
     @property
     def is_over_supports(self) -> bool:

@@ -28,6 +28,9 @@ __all__ = ["StrapPlate"]
 ROUNDING = 1e-9
 # A part lies on so many.
 SUPPORTS = 3
+# How high a strap with its nut and stud stands above the face that it presses on, in radii of its tip: a bar as thick as
+# the tip is wide, a washer, a nut as high as its bolt is thick, and some of the stud.
+USUAL_STANDOUT = 6.0
 
 
 @make_class_from_table
@@ -42,6 +45,8 @@ class StrapPlate(Toolkit):
     straps : how many press the part down, 1 to 4.
     tip_radius : of a strap's round tip in mm.
     reach : least and most in mm from the middle of a bolt's hole to the tip of its strap.
+    strap_height : how high a strap stands above the face that it presses on, with nut and stud, for the tools of a
+        program; six radii of its tip for None.
     over : "plate", where the part's foot lies under each tip, or "supports", three of which it lies on, each tip
         over one.
     bolt_pitch : of holes for bolts in mm, one number or (x, y), a whole part of the pitch; None where the
@@ -73,6 +78,7 @@ class StrapPlate(Toolkit):
             fields.STRAPS,
             fields.TIP_RADIUS,
             fields.STRAP_REACH,
+            fields.STRAP_HEIGHT,
             fields.STRAPS_OVER,
             fields.BOLT_PITCH,
             fields.BOLT_OFFSET,
@@ -130,6 +136,7 @@ class StrapPlate(Toolkit):
     straps: int
     tip_radius: float
     reach: tuple[float, float]
+    strap_height: float | None
     over: str
     bolt_pitch: tuple[float, float] | None
     bolt_offset: tuple[float, float]
@@ -146,6 +153,7 @@ class StrapPlate(Toolkit):
             straps: int = 2,
             tip_radius: float = 6.0,
             reach: Iterable[float] = (20.0, 60.0),
+            strap_height: float | None = None,
             over: str = "plate",
             bolt_pitch: float | Iterable[float] | None = None,
             bolt_offset: float | Iterable[float] = 0.0,
@@ -198,7 +206,10 @@ class StrapPlate(Toolkit):
 
     @cached_property
     def strap_set(self) -> StrapSet:
-        return StrapSet(self.straps, self.tip_radius, self.reach, self.max_force, self.bolts, self.over)
+        standout = USUAL_STANDOUT * self.tip_radius if self.strap_height is None else self.strap_height
+        return StrapSet(
+            self.straps, self.tip_radius, self.reach, self.max_force, self.bolts, self.over, standout
+        )
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:

@@ -236,10 +236,13 @@ class Query(SearchQuestion):
                         f"{asked} counts where straps hold the part: leave it out, or take a plate with straps."
                     )
             return
-        if self.loads and self.part_height is None:
+        if self.is_loaded and self.part_height is None:
             raise InputError("how thick the part is decides what straps hold: give its thickness.")
+        if self.program is not None and self.part_height is None:
+            raise InputError(
+                "how thick the part is decides what straps have in the way of: give its thickness."
+            )
         not_done = {
-            "a program": (self.program is not None, "keep the straps off the cut by keep-out zones"),
             "a jaw force": (self.jaw_force is not None, "the force that each strap needs is told for loads"),
             "seating": (
                 self.seating is not None,

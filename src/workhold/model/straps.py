@@ -19,6 +19,7 @@ from workhold.errors import InputError
 from workhold.fixels.strap_set import StrapSet
 from workhold.limits import convert_real, refuse_long
 from workhold.model.first_choice import has_house_order
+from workhold.model.jaw_hold import ProgramNeed
 from workhold.model.quality import Figure
 
 __all__ = [
@@ -172,6 +173,7 @@ class StrappedHold:
     max_force : that a strap is rated for, in N; None where nobody says.
     is_looked_at : whether a push was sought, and straps where there are loads; only for the best seats they are.
     supports : columns and rows of the three supports that the part lies on; none where it lies on the plate.
+    program_need : what the tools of the program ask of each strap; None without their forces.
     """
 
     straps: tuple[Strap, ...]
@@ -181,12 +183,19 @@ class StrappedHold:
     max_force: float | None = None
     is_looked_at: bool = True
     supports: tuple[tuple[int, int], ...] = ()
+    program_need: ProgramNeed | None = None
+
+    @property
+    def needs(self) -> tuple[float | None, ...]:
+        """The force in N of each strap that each load, and the program, ask for; None where none is enough."""
+        of_program = () if self.program_need is None else (self.program_need.force,)
+        return (*self.clamp_needed_each, *of_program)
 
     @property
     def clamp_needed(self) -> float | None:
         """The force in N of each strap that the worst load asks for; None without loads, and where none is enough."""
-        each = [one for one in self.clamp_needed_each if one is not None]
-        return max(each) if each and len(each) == len(self.clamp_needed_each) else None
+        each = [one for one in self.needs if one is not None]
+        return max(each) if each and len(each) == len(self.needs) else None
 
     @property
     def is_unfit(self) -> bool:
@@ -205,7 +214,7 @@ class StrappedHold:
         """Whether straps were sought, and found no places, or hold not all loads with any force."""
         if not self.is_looked_at or self.places is None:
             return False
-        return not self.straps or None in self.clamp_needed_each
+        return not self.straps or None in self.needs
 
     @property
     def is_beyond_rating(self) -> bool:

@@ -116,6 +116,8 @@ def make_locating_query(query: Query) -> Query:
         restrictions=evolve(query.restrictions, touch=()),
         contact_margin=query.contact_margin,
         peg_height=query.peg_height,
+        thickness=query.thickness,
+        program=query.program,
     )
 
 

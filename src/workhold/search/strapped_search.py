@@ -92,7 +92,7 @@ def result_of(table: FixtureTable, found: FoundSeats, query: Query) -> Result:
         notes.append(LeftUndecided(undecided))
     if found.is_complete and len(table) == 0 and not undecided:
         notes.append(no_fixture(found, query))
-    if len(table) and not query.loads:
+    if len(table) and not query.is_loaded:
         notes.append(Remark(NOT_LOADED))
     return Result(
         query=query,
@@ -218,7 +218,7 @@ def strapped_holds(
             return holds, False
         fixture = result[place]
         search = StrapSearch(fixture, query, question_of(query))
-        holds[place] = search.best(cancel) if query.loads else search.unloaded()
+        holds[place] = search.best(cancel) if query.is_loaded else search.unloaded()
         seated += holds[place].push is not None
         if progress is not None:
             progress(seated / wanted, len(result))

@@ -37,6 +37,7 @@ __all__ = [
     "BROKEN",
     "DIRECTIONS",
     "Grip",
+    "HeldByFriction",
     "MotionProgram",
     "corners_of_load",
     "directed",

@@ -17,20 +17,21 @@ from __future__ import annotations
 from heapq import heappop, heappush
 from itertools import count, product
 from math import ceil, cos, inf, pi, sin
+from typing import Protocol
 
 import numpy as np
-from attrs import frozen
+from attrs import field, frozen
 from numpy.typing import NDArray
 
 from workhold.model.cutting_tool import ANY
 from workhold.model.jaw_hold import ProgramNeed
 from workhold.model.program import Program
-from workhold.statics.friction import Grip, MotionProgram
+from workhold.statics.friction import HeldByFriction, MotionProgram
 from workhold.statics.path_forces import EVERY, WITHIN
 from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
 from workhold.units import Unit
 
-__all__ = ["CuttingPieces", "asked_words", "worst_of_program"]
+__all__ = ["CuttingPieces", "PressedPart", "asked_words", "worst_of_program"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -166,26 +167,46 @@ def asked_words(need: ProgramNeed, program: Program, unit: Unit) -> str:
     return f"The program asks for a jaw force of {round_force_up(need.force, unit)}, in {asked.place(unit)}."
 
 
+class HeldPart(HeldByFriction, Protocol):
+    """A part that is held by friction, with the frame of its wrenches."""
+
+    @property
+    def centre(self) -> Array:
+        """What moments are taken about, in mm."""
+        ...
+
+    @property
+    def length(self) -> float:
+        """What moments are divided by, in mm."""
+        ...
+
+    def wrenches(self, points: Array, forces: Array) -> Array:
+        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm."""
+        ...
+
+
 @frozen(eq=False)
 class PressedPart:
-    """Pieces on a part that lies turned and moved between jaws, and the loads of some of them.
+    """Pieces on a part that lies turned and moved between jaws or under straps, and the loads of some of them.
 
     Parameters
     ----------
     pieces : in the part's coordinates.
-    grip : of the part between the jaws.
+    grip : of the part.
     motions : that the grip resists.
     theta : by which the part is turned, in radians.
     position : by which it is then moved, in mm.
     safety : by which loads are multiplied.
+    still : a wrench (6,) that acts besides, without that factor: the weight.
     """
 
     pieces: CuttingPieces
-    grip: Grip
+    grip: HeldPart
     motions: MotionProgram
     theta: float
     position: tuple[float, float]
     safety: float
+    still: Array = field(factory=lambda: np.zeros(6))
 
     def loads(self, chosen: IntArray, low: float, high: float) -> Array:
         """Return wrenches (N, 6) whose hull has the loads of some pieces with directions between two, in radians."""
@@ -220,7 +241,7 @@ class PressedPart:
         grip = self.grip
         rows = grip.wrenches(places, forces)
         rows[:, 5] += torques[twist] / grip.length
-        return np.asarray(rows * self.safety)
+        return np.asarray(rows * self.safety + self.still)
 
     def hardest_against(self, motion: Array) -> tuple[Array, int]:
         """Return the load (6,) that drives the part hardest along a motion (6,), and the piece that makes it."""
@@ -243,14 +264,14 @@ class PressedPart:
         ahead = force[at] * np.array([cos(way[at]), sin(way[at])])
         row = grip.wrenches(places[at][None], np.array([[*ahead, -press[at]]]))[0]
         row[5] -= torque[at] * (1.0 if motion[5] > 0.0 else -1.0) / grip.length
-        return row * self.safety, at % len(pieces)
+        return row * self.safety + self.still, at % len(pieces)
 
-    def climb(self) -> tuple[float, int]:
-        """Return a large jaw force in N that a piece asks for, and the piece: each load leads to a harder one.
+    def climb(self) -> tuple[float, int, Array]:
+        """Return a large clamp force in N that a piece asks for, the piece, and the load: each leads to a harder one.
 
-        It is infinite where no jaw force holds a load.
+        It is infinite where no clamp force holds a load.
         """
-        best, at = -inf, 0
+        best, at, hardest = -inf, 0, np.zeros(6)
         for start in (*np.eye(6), *-np.eye(6)):
             load, piece = self.hardest_against(start)
             reached = -1.0
@@ -259,12 +280,12 @@ class PressedPart:
             ):
                 reached = force
                 if force > best:
-                    best, at = force, piece
+                    best, at, hardest = force, piece, load
                 if force == inf:
-                    return best, at
+                    return best, at, hardest
                 motion = self.motions.motions[(self.motions.motions @ -load).argmax()]
                 load, piece = self.hardest_against(motion)
-        return best, at
+        return best, at, hardest
 
     def range_of(self, piece: int, low: float, high: float) -> tuple[float, float]:
         """Return what a range of directions has in common with that of a piece, or the range itself."""
@@ -305,26 +326,29 @@ class PressedPart:
 
 
 def worst_of_program(
-    grip: Grip,
+    grip: HeldPart,
     pieces: CuttingPieces,
     program: Program,
     theta: float,
     position: tuple[float, float],
     safety: float,
+    still: Array | None = None,
 ) -> ProgramNeed | None:
-    """Return the jaw force that a program asks for and the move that does; None where it presses on nothing.
+    """Return the clamp force that a program asks for and the move that does; None where it presses on nothing.
 
     Parameters
     ----------
-    grip : of the part between the jaws.
+    grip : of the part.
     pieces : of the program.
     theta, position : how the part is turned and moved from its drawing, in radians and mm.
     safety : factor on the loads.
+    still : a wrench (6,) that acts besides, without that factor; none if not given.
     """
     if not len(pieces):
         return None
     motions = MotionProgram(grip)
-    placed = PressedPart(pieces, grip, motions, theta, position, safety)
+    weight = np.zeros(6) if still is None else still
+    placed = PressedPart(pieces, grip, motions, theta, position, safety, weight)
     queue = list[tuple[float, int, int, IntArray, float, float, Array]]()
     number = count()
 
@@ -345,7 +369,7 @@ def worst_of_program(
             if len(inside):
                 add(inside, low, high)
     # The hardest that a piece asks for, what all that was ruled out asks for at most, and the piece.
-    (best, at), most = placed.climb(), 0.0
+    (best, at, _), most = placed.climb(), 0.0
     while queue and best < inf:
         known, _, _, chosen, low, high, loads = heappop(queue)
         limit = best * (1.0 + GAP) if best > 0.0 else best

@@ -115,6 +115,20 @@ class StrapsOnPart:
     friction: float
 
     @property
+    def centre(self) -> Array:
+        """What moments are taken about, in mm."""
+        return self.part.centre
+
+    @property
+    def length(self) -> float:
+        """What moments are divided by, in mm."""
+        return self.part.length
+
+    def wrenches(self, points: Array, forces: Array) -> Array:
+        """Wrenches (N, 6) of forces (N, 3) at points (N, 3) in mm."""
+        return self.part.wrenches(points, forces)
+
+    @property
     def pushing(self) -> Array:
         """Wrenches (2 L, 6) of the locators."""
         return self.part.pushing

@@ -37,16 +37,20 @@ from workhold.model.friction import (
     coefficients_of,
     find_friction_coefficient,
 )
+from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.program import Program
 from workhold.model.query import Query
 from workhold.model.requirements import Load, Zone
 from workhold.model.straps import Strap, StrapHardware, StrappedHold
 from workhold.model.support_request import SpatialLoad, SupportRequest
 from workhold.statics.friction import MotionProgram, directed
+from workhold.statics.jaw_program import CuttingPieces, PressedPart, worst_of_program
 from workhold.statics.patches import PressedPolygon
 from workhold.statics.strapped import StrappedPart, StrapsOnPart
 from workhold.supports.hand_push import find_hand_push
 from workhold.supports.strap_places import StrapPlaces, find_strap_places
 from workhold.supports.straps_over_supports import PadPlaces, SupportedStraps
+from workhold.supports.straps_past_tools import are_clear
 
 __all__ = [
     "NO_LOADS",
@@ -86,6 +90,7 @@ class StrapQuestion:
     safety : the factor on loads.
     weight : of the part in N, without that factor; it acts at the middle of the foot.
     is_over_supports : whether the part lies on three supports, and each tip presses over one of them.
+    program : whose tools pass the straps, and press on the part where their forces are known.
     """
 
     straps: StrapHardware
@@ -95,6 +100,7 @@ class StrapQuestion:
     safety: float = SAFETY
     weight: float = 0.0
     is_over_supports: bool = False
+    program: Program | None = None
 
     @property
     def below(self) -> str:
@@ -171,6 +177,7 @@ def question_of(query: Query) -> StrapQuestion:
         query.safety_factor,
         query.weight or 0.0,
         straps.is_over_supports,
+        query.program,
     )
 
 
@@ -256,10 +263,21 @@ class StrapSearch:
 
     @cached_property
     def places(self) -> StrapPlaces:
-        query = self.query
-        return find_strap_places(
-            self.fixture, query.workpiece, query.toolkit, self.asked.request, self.asked.straps
+        query, asked = self.query, self.asked
+        places = find_strap_places(self.fixture, query.workpiece, query.toolkit, asked.request, asked.straps)
+        straps = query.toolkit.strap_set
+        if asked.program is None or straps is None:
+            return places
+        bolts = asked.bolts(self.fixture)
+        clear = are_clear(
+            asked.program,
+            self.fixture.pose,
+            places.at,
+            np.column_stack(bolts.place(places.hole[:, 0], places.hole[:, 1])).reshape(-1, 2),
+            self.measure_heights(places.at),
+            straps,
         )
+        return StrapPlaces(places.hole[clear], places.at[clear])
 
     @cached_property
     def heights(self) -> Array:
@@ -288,10 +306,7 @@ class StrapSearch:
     @cached_property
     def loads(self) -> list[Array]:
         """The wrenches (N, 6) of the corners of each load, with the safety factor, and of the weight."""
-        part, asked = self.part, self.asked
-        integrals = self.foot.integrals[0]
-        middle = (integrals[1:] / integrals[0])[None]
-        weight = asked.weight * part.level_wrenches(middle, 0.0, (0.0, 0.0, -1.0))[0]
+        part, asked, weight = self.part, self.asked, self.weight
         out = []
         for load in asked.loads:
             points, forces = list_load_corners(load.at_height(asked.request.thickness), self.fixture)
@@ -300,6 +315,66 @@ class StrapSearch:
             rows[:, 3:] += np.array([*tilt, load.moment]) / part.length
             out.append(rows * asked.safety + weight)
         return out
+
+    @cached_property
+    def weight(self) -> Array:
+        """The wrench (6,) of the part's weight, at the middle of its foot."""
+        integrals = self.foot.integrals[0]
+        middle = (integrals[1:] / integrals[0])[None]
+        return np.asarray(self.asked.weight * self.part.level_wrenches(middle, 0.0, (0.0, 0.0, -1.0))[0])
+
+    @cached_property
+    def cuts(self) -> CuttingPieces | None:
+        """Where the tools of the program press on the part; None where they do nowhere, or nobody says how hard."""
+        program = self.asked.program
+        if program is None or program.forces is None:
+            return None
+        cuts = CuttingPieces.from_program(program, self.asked.request.thickness)
+        return cuts if len(cuts) else None
+
+    def program_need(self, grip: StrapsOnPart) -> ProgramNeed | None:
+        """What the tools of the program ask of each strap; None without their forces."""
+        cuts, program, pose = self.cuts, self.asked.program, self.fixture.pose
+        if cuts is None or program is None:
+            return None
+        theta = radians(pose.theta_deg)
+        return worst_of_program(grip, cuts, program, theta, (pose.x, pose.y), self.asked.safety, self.weight)
+
+    def reckon(self, grip: StrapsOnPart, keep: Callable[[Array, float], None], enough: float) -> float:
+        """The force that loads and program ask of straps, or a bound that is not below ``enough``.
+
+        Of a program it is what the hardest load asks for that an ascent finds; what is told in the end is proven
+        (:meth:`program_need`). Each motion (6,) that a load drives, with its power, is handed to ``keep``.
+        """
+        program, need = MotionProgram(grip), 0.0
+        for row in (row for rows in self.loads for row in rows):
+            force, motion = program.driven_by(row)
+            power = float(-row @ motion)
+            if force is None:
+                keep(motion / np.abs(motion).max(), power / np.abs(motion).max())
+                return inf
+            if force > need:
+                need = force
+                keep(motion, power)
+            if need > enough:
+                return need
+        return need if self.cuts is None else max(need, self.reckon_program(self.cuts, grip, keep))
+
+    def reckon_program(
+        self, cuts: CuttingPieces, grip: StrapsOnPart, keep: Callable[[Array, float], None]
+    ) -> float:
+        """The force that the program asks of straps by its hardest load; as of :meth:`reckon`."""
+        pose, motions = self.fixture.pose, MotionProgram(grip)
+        theta = radians(pose.theta_deg)
+        pressed = PressedPart(cuts, grip, motions, theta, (pose.x, pose.y), self.asked.safety, self.weight)
+        force, _, hardest = pressed.climb()
+        for motion in motions.motions:
+            load, _ = pressed.hardest_against(motion)
+            keep(motion, float(-load @ motion))
+        if force == inf:
+            _, motion = motions.driven_by(hardest)
+            keep(motion / np.abs(motion).max(), float(-hardest @ motion) / np.abs(motion).max())
+        return force
 
     def on(self, chosen: Sequence[int]) -> StrapsOnPart:
         """The part with straps at some places."""
@@ -345,7 +420,9 @@ class StrapSearch:
             )
             for k in chosen
         )
-        return evolve(hold, straps=straps, clamp_needed_each=each)
+        return evolve(
+            hold, straps=straps, clamp_needed_each=each, program_need=self.program_need(self.on(chosen))
+        )
 
     def best_over_supports(self, cancel: Event | None = None) -> StrappedHold:
         """The supports and the straps over them that need the least force."""
@@ -368,6 +445,7 @@ class StrapSearch:
             hold,
             straps=straps,
             clamp_needed_each=found.needs(chosen),
+            program_need=self.program_need(found.on(chosen)),
             supports=tuple(holes[k] for k in chosen.pads),
         )
 
@@ -468,20 +546,8 @@ class SetSearch:
 
     def reckon(self, chosen: IntArray) -> float:
         """The force that a set (K,) needs, or a bound that is not below the best; its motions are kept."""
-        search, need = self.search, 0.0
-        program = MotionProgram(search.on(chosen.tolist()))
-        for row in (row for rows in search.loads for row in rows):
-            force, motion = program.driven_by(row)
-            power = float(-row @ motion)
-            if force is None:
-                self.keep(motion / np.abs(motion).max(), power / np.abs(motion).max())
-                return inf
-            if force > need:
-                need = force
-                self.keep(motion, power)
-            if need > self.least_force:
-                break
-        return need
+        search = self.search
+        return search.reckon(search.on(chosen.tolist()), self.keep, self.least_force)
 
     def keep(self, motion: Array, power: float) -> None:
         """Keeps a motion (6,) that a load drives with a power."""

@@ -22,16 +22,18 @@ import numpy as np
 from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
+from workhold.contact.swept import find_swept_below
 from workhold.conventions import AGREEMENT, GAP_SLACK
 from workhold.errors import InputError
 from workhold.model.fixture import Fixture
 from workhold.model.workpiece import Workpiece
-from workhold.statics.friction import BROKEN, MotionProgram
+from workhold.statics.friction import BROKEN
 from workhold.statics.strapped import StrappedPart, StrapsOnPart
 from workhold.supports.choosing import list_triples
 from workhold.supports.faces import TouchableFace, area_center
 from workhold.supports.holes import find_holes_under_face
 from workhold.supports.strap_places import find_bolt_holes, find_top_face
+from workhold.supports.straps_past_tools import are_clear, keep_clear
 
 if TYPE_CHECKING:
     from workhold.supports.straps import StrapSearch
@@ -92,6 +94,11 @@ class PadPlaces:
                 "pad margin, or the plate a larger pitch."
             )
         at = np.column_stack(plate.place(hole[:, 0], hole[:, 1])).reshape(-1, 2)
+        if asked.program is not None:
+            below = np.column_stack(fixture.pose.inverse.apply(at[:, 0], at[:, 1]))
+            swept = find_swept_below(asked.program, 0.0)
+            clear = keep_clear(swept, asked.program, below, below, request.pad_radius)
+            hole, at = hole[clear], at[clear]
         return cls(hole, at, list_reaching_bolts(search, at))
 
 
@@ -106,10 +113,15 @@ def list_reaching_bolts(search: StrapSearch, at: Array) -> tuple[tuple[tuple[int
     holes, points = find_bolt_holes(fixture, query.workpiece, query.toolkit, asked.straps)
     apart = np.hypot(*np.moveaxis(at[:, None] - points[None], 2, 0))
     least, most = asked.straps.reach
-    within = (apart >= least - GAP_SLACK) & (apart <= most + GAP_SLACK)
+    within = (apart >= least - GAP_SLACK) & (apart <= most + GAP_SLACK) & tip[:, None]
+    straps = query.toolkit.strap_set
+    if asked.program is not None and straps is not None:
+        one, other = np.nonzero(within)
+        heights = search.measure_heights(at)[one]
+        within[one, other] = are_clear(asked.program, fixture.pose, at[one], points[other], heights, straps)
     out = []
-    for number, is_free in enumerate(tip.tolist()):
-        near = np.flatnonzero(within[number]) if is_free else np.zeros(0, np.int64)
+    for number in range(len(at)):
+        near = np.flatnonzero(within[number])
         # Nearest first; of equal ones the first by column and row.
         near = near[np.argsort(apart[number, near].round(6), kind="stable")][: asked.straps.count]
         out.append(tuple((int(column), int(row)) for column, row in holes[near]))
@@ -281,9 +293,10 @@ class SupportedStraps:
             if chosen.strapped not in self.relaxed:
                 # On all pads together no more is needed than on three of them.
                 self.relaxed.add(chosen.strapped)
-                self.reckon(self.strap(self.whole, chosen.strapped), inf)
+                grip = self.strap(self.whole, chosen.strapped)
+                self.search.reckon(grip, self.keep, inf)
             else:
-                need = self.reckon(self.on(chosen), least)
+                need = self.search.reckon(self.on(chosen), self.keep, least)
                 if need < least:
                     best, least = number, need
                 bounds[number] = inf
@@ -299,22 +312,6 @@ class SupportedStraps:
             force = np.divide(self.power[number], done, out=np.full(len(out), inf), where=done > 0.0)
             np.maximum(out, np.where(allowed[pads].all(axis=1), force, 0.0), out=out)
         return out
-
-    def reckon(self, grip: StrapsOnPart, enough: float) -> float:
-        """The force that a set needs, or a bound that is not below ``enough``; its motions are kept."""
-        program, need = MotionProgram(grip), 0.0
-        for row in (row for rows in self.search.loads for row in rows):
-            force, motion = program.driven_by(row)
-            power = float(-row @ motion)
-            if force is None:
-                self.keep(motion / np.abs(motion).max(), power / np.abs(motion).max())
-                return inf
-            if force > need:
-                need = force
-                self.keep(motion, power)
-            if need > enough:
-                break
-        return need
 
     def keep(self, motion: Array, power: float) -> None:
         """Keeps a motion (6,) that a load drives with a power."""

@@ -6,12 +6,15 @@ import numpy as np
 
 from workhold.model.fixture import Fixture
 from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
+from workhold.model.jaw_hold import ProgramNeed
+from workhold.model.program import Program
 from workhold.model.straps import StrappedHold
+from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_force_up
 from workhold.supports.straps import StrapQuestion
 from workhold.supports.straps_over_supports import find_middle, stand_on
 from workhold.units import Unit
 
-__all__ = ["list_remarks", "list_steps", "list_warnings", "reckoned_with"]
+__all__ = ["describe_program_need", "list_remarks", "list_steps", "list_warnings", "reckoned_with"]
 
 
 def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:
@@ -86,6 +89,26 @@ def list_remarks(found: StrappedHold) -> list[str]:
     ]
 
 
+def describe_program_need(need: ProgramNeed, program: Program, unit: Unit) -> str:
+    """Say what a program asks of each strap and where, in a sentence."""
+    where = find_place(need, program, unit)
+    if need.force is None:
+        return f"No force of the straps holds the part in {where}."
+    return f"The program asks for {round_force_up(need.force, unit)} of each strap at its tip, in {where}."
+
+
+def find_place(need: ProgramNeed, program: Program, unit: Unit) -> str:
+    """Where a program asks for most: its line and tool."""
+    cut = find_cut_of_move(program, need.move)
+    return AskedForce(need.force or 0.0, need.line, need.tool, None, cut).place(unit)
+
+
+def name_acting(found: StrappedHold) -> str:
+    """What acts on the part, in words."""
+    names = ("the loads", bool(found.clamp_needed_each)), ("the tools", found.program_need is not None)
+    return " and ".join(name for name, is_there in names if is_there)
+
+
 def reckoned_with(asked: StrapQuestion) -> str:
     """The coefficients of friction and the safety factor, in a sentence."""
     given = dict(asked.friction or ())
@@ -115,20 +138,24 @@ def list_warnings(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, u
     for number, need in enumerate(found.clamp_needed_each, 1):
         if need is None:
             out.append(f"no force of the straps holds load {number}.")
+    asked_by, program = found.program_need, asked.program
+    if asked_by is not None and asked_by.force is None and program is not None:
+        out.append(f"no force of the straps holds the part in {find_place(asked_by, program, unit)}.")
     most, need = found.max_force, found.clamp_needed
     if most is not None and need is not None and need > most:
-        out.append(f"the loads ask for {need:.0f} N, and a strap is rated for {most:g} N.")
+        out.append(f"{name_acting(found)} ask for {need:.0f} N, and a strap is rated for {most:g} N.")
     return out
 
 
 def describe_missing_places(asked: StrapQuestion) -> str:
     """Why there are no straps, with what to do."""
+    free = " clear of the program" if asked.program is not None else ""
     if asked.is_over_supports:
         return (
-            f"there are no three supports under the part with {asked.straps.count} of these straps over them: take "
+            f"there are no three supports{free} under the part with {asked.straps.count} of these straps over them: take "
             "another number, smaller pads or tips, a longer reach, or a finer pitch."
         )
     return (
-        f"there are no places where {asked.straps.count} of these straps press the part flat on the plate: take another "
-        "number, smaller tips or a longer reach."
+        f"there are no places{free} where {asked.straps.count} of these straps press the part flat on the plate: take "
+        "another number, smaller tips or a longer reach."
     )

@@ -40,11 +40,12 @@ class PressingPath:
     Parameters
     ----------
     move : (N,) numbers of the program's moves.
-    point : (N, 3) in mm.
+    point : (N, 3) in mm, from what moments are taken about.
     against : (N,) direction against the feed, in radians.
     force, torque : (N,) in N and N mm, with the safety factor.
     axial : (N, 2) along -z, in N, with the safety factor.
     spread : half the range of directions about against the feed, in radians.
+    still : a wrench (6,) that acts besides.
     """
 
     move: IntArray
@@ -54,9 +55,12 @@ class PressingPath:
     torque: Array
     axial: Array
     spread: float
+    still: Array
 
     @classmethod
-    def from_program(cls, program: Program, fixture: Fixture, height: float, safety: float) -> PressingPath:
+    def from_program(
+        cls, program: Program, fixture: Fixture, height: float, safety: float, centre: Array, still: Array
+    ) -> PressingPath:
         walk, forces, moves = walk_of(program), program.forces, program.moves
         assert forces is not None
         stretches = forces.stretches
@@ -82,12 +86,13 @@ class PressingPath:
         against = np.arctan2(chord[:, 1], chord[:, 0]) + sweep * (share - 0.5) + pi + turn
         return cls(
             move,
-            point,
+            point - centre,
             against,
             safety * forces.force[move],
             safety * forces.torque[move],
             safety * forces.axial[move],
             SIXTY if forces.direction == "feed" else pi,
+            still,
         )
 
     def select_moves(self, moves: IntArray) -> PressingPath:
@@ -101,6 +106,7 @@ class PressingPath:
             self.torque[own],
             self.axial[own],
             self.spread,
+            self.still,
         )
 
     def load(self, place: int, turn: float, pull: float, twist: float) -> Array:
@@ -109,7 +115,7 @@ class PressingPath:
         x, y, z = self.point[place].tolist()
         row = compute_wrenches(np.array([[x, y, z]]), (force * cos(turn), force * sin(turn), -pull))[0]
         row[5] += twist / LENGTH
-        return np.asarray(row)
+        return np.asarray(row + self.still)
 
     def find_dearest_load(self, prices: Array) -> Array:
         """Return the load (6,) of all whose price is the least: -prices . load is what it asks for at least."""
@@ -160,8 +166,10 @@ def find_program_force_faults(
     held: HeldBetweenJaws,
     height: float,
     safety: float,
+    frame: tuple[Array, Array] = (np.zeros(3), np.zeros(6)),
+    force_name: str = "jaw force",
 ) -> Iterator[str]:
-    """Give what is wrong with the jaw force that a file says a program asks for, without a full stop.
+    """Give what is wrong with the force that a file says a program asks for, without a full stop.
 
     Parameters
     ----------
@@ -169,10 +177,12 @@ def find_program_force_faults(
     held : the part between the jaws.
     height : of the part, in mm.
     safety : factor on the loads.
+    frame : what moments are taken about (3,) in mm, and a wrench (6,) that acts besides the tools.
+    force_name : what the force is called.
     """
-    path = PressingPath.from_program(program, fixture, height, safety)
+    path = PressingPath.from_program(program, fixture, height, safety, *frame)
     if (need is None) != (not len(path.move)):
-        yield "the jaw force of its program is missing, or given where no tool presses on the part"
+        yield f"the {force_name} of its program is missing, or given where no tool presses on the part"
         return
     if need is None:
         return
@@ -188,17 +198,17 @@ def find_program_force_faults(
             found = held.answer(load)
             if found is None:
                 if need.force is not None:
-                    yield f"line {need.line} is held by no jaw force, and {need.force:.9g} N are written"
+                    yield f"line {need.line} is held by no {force_name}, and {need.force:.9g} N are written"
                 return
             starts.append(found[1])
         if need.force is None:
-            yield f"no jaw force is said to hold the part in line {need.line}, and some do"
+            yield f"no {force_name} is said to hold the part in line {need.line}, and some do"
             return
         worst, there = path.find_hardest_force(held, starts), named.find_hardest_force(held, starts)
     except (UnsettledError, np.linalg.LinAlgError):
         return
     if worst is None or there is None:
-        yield f"no jaw force holds the part along the program, and {need.force:.9g} N are written"
+        yield f"no {force_name} holds the part along the program, and {need.force:.9g} N are written"
         return
     spare = HAIR + BELOW * worst
     if not -spare <= need.force - worst <= spare + ABOVE * worst:

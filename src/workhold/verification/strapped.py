@@ -39,10 +39,12 @@ from workhold.verification.jaw_forces import (
     UnsettledError,
     compute_wrenches,
 )
+from workhold.verification.jaw_program import find_program_force_faults
 from workhold.verification.placing import enclose_written_pose, find_avoided_faces, judge_gaps, prove_pose
 from workhold.verification.rules.hardware import ToolkitRules
 from workhold.verification.support_listing import SupportPlaces
 from workhold.verification.tolerances import AGREEMENT, Finding
+from workhold.verification.tool_walk import Element, list_elements, walk_of
 from workhold.verification.touching import judge_touching
 
 __all__ = ["StrapJudge"]
@@ -139,6 +141,7 @@ class StrapJudge:
         for key in keys:
             self.seen.setdefault(key, place)
         yield from self.zone_faults(fixture)
+        yield from self.tool_faults(fixture, hold)
         if hold.is_looked_at:
             yield from self.push_faults(fixture, hold)
             yield from self.strap_faults(fixture, hold)
@@ -189,6 +192,41 @@ class StrapJudge:
                 point = back.apply(peg.x, peg.y)
                 if is_inside(point, [loop]) or distance_to(point, loop) < radius - AGREEMENT:
                     yield f"locator {peg.hole} stands in a keep-out zone"
+
+    def tool_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
+        """Whether the tools of the program pass locators, straps and supports, by a walk along its moves."""
+        if self.query.passed is None:
+            return
+        program, height = self.query.passed
+        walk = walk_of(program)
+        elements = [*list_elements(fixture, self.hardware, height), *self.list_strap_elements(fixture, hold)]
+        for element in elements:
+            near = walk.find_nearest(element)
+            if near.high < program.clearance - AGREEMENT:
+                yield (
+                    f"line {near.line} of the program brings a tool within {near.high:.6g} mm of {element.name}, and "
+                    f"{program.clearance:g} mm are to be kept"
+                )
+
+    def list_strap_elements(self, fixture: Fixture, hold: StrappedHold) -> Iterator[Element]:
+        """Yield bars from the faces they press on, bolts with heels from below, and supports below the part."""
+        back, radius = fixture.pose.inverse, self.straps.tip_radius
+        plate = self.query.toolkit.plates[0]
+        raised = self.raised if self.straps.is_over_supports else 0.0
+        for number, one in enumerate(hold.straps, 1):
+            x, y = (float(value) for value in self.straps.bolts.place(*one.hole))
+            far = hypot(x - one.at[0], y - one.at[1])
+            share = 2 * radius / far if far else 0.0
+            heel = back.apply(x + share * (x - one.at[0]), y + share * (y - one.at[1]))
+            tip, bolt, end = ((float(a), float(b)) for a, b in (back.apply(*one.at), back.apply(x, y), heel))
+            name, low = f"strap {number}", one.height - raised
+            top = low + self.straps.standout
+            yield Element(name, name, tip, end, radius, top, low=low)
+            yield Element(f"the bolt of {name}", name, bolt, end, radius, top)
+        for column, row in hold.supports:
+            x, y = (float(value) for value in back.apply(*plate.place(column, row)))
+            name = f"the support in {plate.place_name(column, row)}"
+            yield Element(name, name, (x, y), (x, y), self.request.pad_radius, 0.0)
 
     def push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Whether the push by hand is on the outline, near enough to square, and presses all locators."""
@@ -335,6 +373,20 @@ class StrapJudge:
         has_arcs = any(isinstance(one, Arc) for one in self.query.workpiece.segments)
         held, centre = self.held(fixture, hold, foot)
         weight = self.weight(foot, centre)
+        program = self.query.program
+        if program is not None and program.forces is not None:
+            yield from find_program_force_faults(
+                program,
+                hold.program_need,
+                fixture,
+                held,
+                self.request.thickness,
+                self.query.safety_factor,
+                (centre, weight),
+                "force of the straps",
+            )
+        elif hold.program_need is not None:
+            yield "a force of its program is given, and no program presses on the part"
         for number, (load, written) in enumerate(
             zip(self.query.loads, hold.clamp_needed_each, strict=True), 1
         ):

@@ -20,6 +20,7 @@ from workhold.files.result.hold_text import make_need_entry
 from workhold.model.jaw_hold import JawHold
 from workhold.model.program import Program
 from workhold.model.solid import SolidOutline
+from workhold.model.straps import StrappedHold
 from workhold.units import MILLIMETRE
 from workhold.web.request_forms import LARGEST, Form, Name, Point
 from workhold.web.worker import Order
@@ -242,11 +243,17 @@ def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
     """Return what the tools of a result's program ask of a fixture, in N and in sentences; None without forces."""
     from workhold.statics.jaw_program import asked_words
     from workhold.statics.program_forces import find_cutting_need
+    from workhold.supports.words_of_straps import describe_program_need
 
     hold, program = (result[index].hold, result.query.program) if result.holds else (None, None)
     if isinstance(hold, JawHold) and hold.program_need is not None and program is not None:
         asked = hold.program_need
         return {**make_need_entry(asked), "words": [asked_words(asked, program, MILLIMETRE)]}
+    if isinstance(hold, StrappedHold):
+        if hold.program_need is None or program is None:
+            return None
+        words = describe_program_need(hold.program_need, program, MILLIMETRE)
+        return {**make_need_entry(hold.program_need), "words": [words]}
     need = find_cutting_need(result, index)
     if need is None:
         return None

@@ -14,13 +14,14 @@ from typing import Any
 
 from workhold.files.result.strapped_text import (
     is_strapped,
+    make_need_entry,
     strapped_columns,
     strapped_entry,
     strapped_rows,
 )
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
-from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch, ProgramNeed
+from workhold.model.jaw_hold import HOLD_FIGURES, JawHold, Patch
 from workhold.model.result import Result
 
 __all__ = ["hold_columns", "hold_entry", "hold_lines", "hold_rows", "is_hold", "make_need_entry"]
@@ -67,16 +68,6 @@ def hold_entry(fixture: Fixture) -> dict[str, Any]:
         "warnings": list(hold.warnings),
         "quality": {key: round_figure_for_file(value) for key, value in hold.as_quality().items()},
         **of_program,
-    }
-
-
-def make_need_entry(need: ProgramNeed) -> dict[str, Any]:
-    """Return what the tools of a program ask for, as it is written."""
-    return {
-        "force": round_figure_for_file(need.force),
-        "line": need.line,
-        "tool": need.tool,
-        "move": need.move,
     }
 
 

@@ -14,12 +14,17 @@ from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
 from workhold.files.result.forms import FormPart, describe_first_fault
-from workhold.files.result.strapped import StrappedSeatPart, check_strapped, table_of_strapped
+from workhold.files.result.strapped import (
+    ProgramForcePart,
+    StrappedSeatPart,
+    check_strapped,
+    table_of_strapped,
+)
 from workhold.files.result.strapped_text import is_strapped
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
-from workhold.model.jaw_hold import JawHold, Patch, ProgramNeed
+from workhold.model.jaw_hold import JawHold, Patch
 from workhold.model.pose import Pose
 from workhold.model.query import Query
 from workhold.model.straps import StrappedHold
@@ -68,15 +73,6 @@ class HoldQualityPart(FormPart):
     tilt: Number = 0.0
 
 
-class ProgramForcePart(FormPart):
-    """The jaw force in N that the tools of the program ask for, and where."""
-
-    force: Number | None = Field(description="null where no jaw force is enough")
-    line: int
-    tool: int
-    move: Whole = Field(description="number of the program's move, from 0")
-
-
 class HoldPart(FormPart):
     """A fixture of two flat jaws; best first."""
 
@@ -111,7 +107,7 @@ class HoldPart(FormPart):
             above=quality.above,
             full_contact=quality.full_contact,
             clamp_needed_each=tuple(quality.clamp_needed_each),
-            program_need=None if need is None else ProgramNeed(need.force, need.line, need.tool, need.move),
+            program_need=None if need is None else need.to_need(),
             max_pressure=quality.max_pressure,
             max_force=toolkit.flat_jaws.max_force,
             unit_force=unit_force,

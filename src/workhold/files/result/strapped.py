@@ -16,12 +16,13 @@ from workhold.files.result.forms import FormPart
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.fixture_table import FixtureTable, make_unknown_quality
+from workhold.model.jaw_hold import ProgramNeed
 from workhold.model.pose import Pose
 from workhold.model.quality import FIGURES
 from workhold.model.query import Query
 from workhold.model.straps import HandPush, Strap, StrappedHold
 
-__all__ = ["StrappedSeatPart", "check_strapped", "table_of_strapped"]
+__all__ = ["ProgramForcePart", "StrappedSeatPart", "check_strapped", "table_of_strapped"]
 
 LARGEST, MOST_HOLES = 1e9, 1_000_000
 Whole = Annotated[int, Field(ge=0)]
@@ -82,6 +83,19 @@ class StrappedQualityPart(FormPart):
     )
 
 
+class ProgramForcePart(FormPart):
+    """The clamp force in N that the tools of the program ask for, of flat jaws or of each strap, and where."""
+
+    force: Number | None = Field(description="null where no force is enough")
+    line: int
+    tool: int
+    move: Whole = Field(description="number of the program's move, from 0")
+
+    def to_need(self) -> ProgramNeed:
+        """Return what is written."""
+        return ProgramNeed(self.force, self.line, self.tool, self.move)
+
+
 class StrappedSeatPart(FormPart):
     """A seat of three locators with the straps that hold the part down there; best first."""
 
@@ -98,6 +112,7 @@ class StrappedSeatPart(FormPart):
     places: Whole | None = None
     push: PushPart | None
     quality: StrappedQualityPart
+    program_force: ProgramForcePart | None = None
 
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """The fixture with the figures that are written."""
@@ -134,6 +149,7 @@ class StrappedSeatPart(FormPart):
             toolkit.strap_set.max_force,
             self.looked_at,
             tuple((a, b) for a, b in self.supports),
+            None if self.program_force is None else self.program_force.to_need(),
         )
 
 

@@ -10,11 +10,19 @@ from collections.abc import Iterator
 from typing import Any
 
 from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import ProgramNeed
 from workhold.model.quality import EDGE_DISTANCE, END_DISTANCE, FIGURES, LOCATION_ERROR, SMALLEST_FACE, TILT
 from workhold.model.result import Result
 from workhold.model.straps import STRAP_FIGURES, StrappedHold
 
-__all__ = ["SEAT_FIGURES", "is_strapped", "strapped_columns", "strapped_entry", "strapped_rows"]
+__all__ = [
+    "SEAT_FIGURES",
+    "is_strapped",
+    "make_need_entry",
+    "strapped_columns",
+    "strapped_entry",
+    "strapped_rows",
+]
 
 DIGITS = 12
 # The figures of a seat, those of straps besides.
@@ -89,7 +97,13 @@ def strapped_entry(fixture: Fixture) -> dict[str, Any]:
             "shares": [figure(one) for one in push.shares],
         },
         "quality": {**seat, **needs},
+        **({} if hold.program_need is None else {"program_force": make_need_entry(hold.program_need)}),
     }
+
+
+def make_need_entry(need: ProgramNeed) -> dict[str, Any]:
+    """Return what the tools of a program ask for, as it is written."""
+    return {"force": figure(need.force), "line": need.line, "tool": need.tool, "move": need.move}
 
 
 def strapped_columns(straps: int) -> list[str]:

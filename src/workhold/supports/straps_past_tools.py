@@ -1,0 +1,73 @@
+"""Straps and supports that the tools of a program pass: where these may stand beside what a program sweeps.
+
+A strap's bar is as wide as its tip, and reaches from the tip over its bolt to a heel as far behind the bolt as the bar
+is wide. The bar is in the way from the face that its tip presses on, bolt and heel from below, all up to the height that
+straps stand above their faces.
+Pads are in the way below the part, such as of a drill that comes through.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from workhold.contact.swept import Swept, find_swept_below, find_swept_between
+from workhold.conventions import GAP_SLACK
+from workhold.fixels.strap_set import StrapSet
+from workhold.model.pose import Pose
+from workhold.model.program import Program
+
+__all__ = ["are_clear", "keep_clear"]
+
+Array = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+def find_heels(tip: Array, bolt: Array, tip_radius: float) -> Array:
+    """Where the bars of straps end behind their bolts (N, 2), in mm."""
+    away = bolt - tip
+    far = np.hypot(away[:, 0], away[:, 1])[:, None]
+    return np.asarray(
+        bolt + 2.0 * tip_radius * np.divide(away, far, out=np.zeros_like(away), where=far > 0.0)
+    )
+
+
+def are_clear(
+    program: Program, pose: Pose, tip: Array, bolt: Array, heights: Array, straps: StrapSet
+) -> BoolArray:
+    """Whether all tools pass each of some straps.
+
+    Parameters
+    ----------
+    tip, bolt : (N, 2) where each presses, and where its bolt stands, in mm in the plate's frame.
+    heights : (N,) of the faces under the tips, in mm above the part's lower side.
+    """
+    radius = straps.tip_radius
+    heel = find_heels(tip, bolt, radius)
+    tip, bolt, heel = (move_into_part(pose, one) for one in (tip, bolt, heel))
+    out = np.ones(len(tip), np.bool_)
+    for height in np.unique(heights).tolist():
+        own, top = np.flatnonzero(heights == height), height + straps.standout
+        below = find_swept_below(program, top)
+        out[own] &= keep_clear(below, program, bolt[own], heel[own], radius)
+        above = find_swept_between(program, height, top)
+        out[own] &= keep_clear(above, program, tip[own], heel[own], radius)
+    return out
+
+
+def move_into_part(pose: Pose, points: Array) -> Array:
+    """Points (N, 2) of the plate as the part has them."""
+    x, y = pose.inverse.apply(points[:, 0], points[:, 1])
+    return np.column_stack([x, y])
+
+
+def keep_clear(swept: Swept, program: Program, starts: Array, ends: Array, radius: float) -> BoolArray:
+    """Whether bodies of a radius about lines between points (N, 2) of the part keep clear of what is swept."""
+    if not len(starts):
+        return np.zeros(0, np.bool_)
+    reach, _ = swept.nearest(starts, ends)
+    out = reach >= program.clearance + radius - GAP_SLACK
+    for x0, y0, x1, y1 in swept.filled.tolist():
+        # Of a box the distance is that to its border, also from within.
+        out &= ~((starts >= (x0, y0)) & (starts <= (x1, y1))).all(axis=1)
+    return np.asarray(out)
