@@ -51,19 +51,28 @@ class ElasticMaterial:
         return f"{self.name} (E {self.elastic_modulus / 1000:.3g} GPa, Poisson {self.poisson:.2g})"
 
 
-MATWEB, ENSINGER = "MatWeb", "Ensinger, data sheet of stock shapes"
-# Data sheets of plastics do not state Poisson's ratio: these are usual ones. A tenth more or less of it changes how far
-# a part bends by some hundredths.
-USUAL_RATIO = "Poisson's ratio a usual one"
+MATWEB, ASSUMED_RATIO = "MatWeb", "Poisson's ratio assumed"
+# A tenth more or less of Poisson's ratio changes how far a part bends by some hundredths. What stood in no table that could
+# be looked up says that it is assumed.
 MATERIALS = {
     one.name: one
     for one in (
         ElasticMaterial("aluminium-6061", 68_900.0, 0.33, 2700.0, f"{MATWEB}, aluminum 6061-T6"),
         ElasticMaterial("aluminium-7075", 71_700.0, 0.33, 2810.0, f"{MATWEB}, aluminum 7075-T6"),
-        ElasticMaterial("mild-steel", 205_000.0, 0.29, 7870.0, f"{MATWEB}, AISI 1020 steel, cold rolled"),
-        ElasticMaterial("steel-4140", 205_000.0, 0.29, 7850.0, f"{MATWEB}, AISI 4140 steel, annealed"),
         ElasticMaterial(
-            "stainless-304", 193_000.0, 0.29, 8000.0, f"{MATWEB}, 304 stainless steel, annealed bar"
+            "mild-steel",
+            205_000.0,
+            0.29,
+            7870.0,
+            f"{MATWEB}, AISI 1020 steel, cold rolled; E and Poisson's ratio typical for steel, as of AISI 4140",
+        ),
+        ElasticMaterial("steel-4140", 205_000.0, 0.29, 7850.0, f"{MATWEB}, AISI 4140 steel, oil quenched"),
+        ElasticMaterial(
+            "stainless-304",
+            193_000.0,
+            0.29,
+            8000.0,
+            f"W. D. Callister, Materials Science and Engineering, appendix B; {ASSUMED_RATIO}",
         ),
         ElasticMaterial("brass", 97_000.0, 0.31, 8490.0, f"{MATWEB}, free-cutting brass UNS C36000"),
         ElasticMaterial(
@@ -71,11 +80,18 @@ MATERIALS = {
             100_000.0,
             0.26,
             7150.0,
-            "W. D. Callister, Materials Science and Engineering, appendix B: grey iron, 90 to 113 GPa",
+            f"The Engineering ToolBox, engineering materials: cast iron, grade 20; {ASSUMED_RATIO}",
         ),
-        ElasticMaterial("pom", 2_800.0, 0.35, 1410.0, f"{ENSINGER} TECAFORM AH natural; {USUAL_RATIO}"),
-        ElasticMaterial("pa6", 3_300.0, 0.39, 1140.0, f"{ENSINGER} TECAMID 6 natural, dry; {USUAL_RATIO}"),
-        ElasticMaterial("peek", 4_200.0, 0.38, 1310.0, f"{ENSINGER} TECAPEEK natural; {USUAL_RATIO}"),
+        ElasticMaterial(
+            "pom",
+            2_800.0,
+            0.35,
+            1410.0,
+            "E assumed, between 2.5 and 3.0 GPa of copolymer and homopolymer in the Engineering Plastics Handbook, table 5.5; "
+            f"{ASSUMED_RATIO}",
+        ),
+        ElasticMaterial("pa6", 3_300.0, 0.39, 1140.0, "assumed, of dry stock; moist it is much softer"),
+        ElasticMaterial("peek", 4_200.0, 0.38, 1310.0, "assumed"),
     )
 }
 

@@ -1,7 +1,8 @@
-"""A part coloured by how far it is bent, and drawn bent many times as far: seen from above at a slant.
+"""A part coloured by how far it is bent, and drawn bent many times as far: seen at a slant, so that the most is seen.
 
 The surface of the mesh is drawn from back to front, each triangle in the colour of its middle. What presses on the part
-dents it there, which no mesh tells; such places are grey. The largest movement that counts is marked.
+dents it there, which no mesh tells; such places are grey. The largest movement that counts is marked: the part is seen
+from the first side that shows it, from above if there is one.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Sequence
 from math import cos, floor, log10, radians, sin
 
 import numpy as np
+from attrs import frozen
 from numpy.typing import NDArray
 
 from workhold.bending.figures import Bending
@@ -28,8 +30,12 @@ __all__ = [
 Array = NDArray[np.float64]
 # Of the part's size, the largest movement as it is drawn.
 LARGEST_SHOWN = 0.05
-# From where it is seen: degrees about the upright, and above the level.
-ROUND, ABOVE = 30.0, 35.0
+# From where it may be seen: degrees about the upright, and above the level. The first that shows the most is taken.
+VIEWS = [(turn, rise) for rise in (35.0, -35.0) for turn in (30.0, 300.0, 120.0, 210.0)]
+# Of the part's size, how far what hides a place lies in front of it at least.
+IN_FRONT = 0.005
+# How long the arrows are that show the axes.
+AXIS = 24.0
 # Colours from nothing to the most, from dark blue to yellow, of equal steps of lightness (B. Jin, N. Heitmann, S. van
 # der Walt, "viridis", CC0), and of what is pressed.
 STOPS = np.array([(68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37)]) / 255.0
@@ -75,53 +81,113 @@ def as_hex(colour: Array) -> str:
     return "#" + "".join(f"{round(255 * min(max(float(one), 0.0), 1.0)):02x}" for one in colour)
 
 
-def seen_from() -> Array:
-    """The directions (3, 3) in the part's frame of right, up and towards the eye."""
-    turn, rise = radians(ROUND), radians(ABOVE)
-    right = np.array([cos(turn), sin(turn), 0.0])
-    back = np.array([-sin(turn), cos(turn), 0.0])
-    up = sin(rise) * back + np.array([0.0, 0.0, cos(rise)])
-    return np.stack([right, up, np.cross(right, up)])
+@frozen(eq=False)
+class BentView:
+    """A part as it is drawn, bent, from one side.
+
+    Parameters
+    ----------
+    frame : (3, 3) directions of right, up and towards the eye.
+    flat : (N, 3) the nodes in that frame, in mm.
+    is_seen : (T,) which triangles face the eye.
+    is_from_below : whether the eye is below the part.
+    """
+
+    frame: Array
+    flat: Array
+    is_seen: NDArray[np.bool_]
+    is_from_below: bool
+
+    @classmethod
+    def of(cls, bending: Bending, times: float, turn: float, rise: float) -> BentView:
+        """A part bent so many times as far, from an angle about the upright and one above the level, in degrees."""
+        turn, rise = radians(turn), radians(rise)
+        right = np.array([cos(turn), sin(turn), 0.0])
+        back = np.array([-sin(turn), cos(turn), 0.0])
+        up = sin(rise) * back + np.array([0.0, 0.0, cos(rise)])
+        frame = np.stack([right, up, np.cross(right, up)])
+        surface = bending.surface
+        flat = (surface.nodes + times * bending.moved) @ frame.T
+        a, b, c = np.moveaxis(flat[surface.triangles[:, :3]], 1, 0)
+        return cls(frame, flat, np.cross(b - a, c - a)[:, 2] > 0.0, rise < 0.0)
+
+    def shows(self, node: int, triangles: NDArray[np.int64]) -> bool:
+        """Whether a node is on a triangle that faces the eye, and no other one is in front of it."""
+        own = (triangles == node).any(axis=1)
+        if not (own & self.is_seen).any():
+            return False
+        others = triangles[self.is_seen & ~own][:, :3]
+        a, b, c = np.moveaxis(self.flat[others], 1, 0)
+        ab, ac, at = b - a, c - a, self.flat[node] - a
+        area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+        area = np.where(area > 0.0, area, np.inf)
+        second = (at[:, 0] * ac[:, 1] - at[:, 1] * ac[:, 0]) / area
+        third = (ab[:, 0] * at[:, 1] - ab[:, 1] * at[:, 0]) / area
+        is_over = (second >= 0.0) & (third >= 0.0) & (second + third <= 1.0) & np.isfinite(area)
+        before = second * ab[:, 2] + third * ac[:, 2] - at[:, 2]
+        return not (is_over & (before > IN_FRONT * np.ptp(self.flat, axis=0).max())).any()
+
+
+def choose_view(bending: Bending, times: float, node: int) -> tuple[BentView, bool]:
+    """The first view that shows a node, and whether there is one; else the first."""
+    views = [BentView.of(bending, times, *angles) for angles in VIEWS]
+    for view in views:
+        if view.shows(node, bending.surface.triangles):
+            return view, True
+    return views[0], False
 
 
 def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit) -> None:
     """Draw the part, bent and coloured, with its scale, into a box of a page."""
     surface, times = bending.surface, exaggeration_of(bending)
+    mark = int(np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin())
+    view, is_shown = choose_view(bending, times, mark)
     scale_height = 34.0
     room = Box(box.x0, box.y0, box.x1, box.y1 - scale_height)
-    frame = seen_from()
-    flat = (surface.nodes + times * bending.moved) @ frame.T
+    flat = view.flat
     low, high = flat[:, :2].min(axis=0), flat[:, :2].max(axis=0)
     factor = min(room.width / (high[0] - low[0]), room.height / (high[1] - low[1]))
     middle = (low + high) / 2
     x = (room.x0 + room.x1) / 2 + factor * (flat[:, 0] - middle[0])
     y = (room.y0 + room.y1) / 2 - factor * (flat[:, 1] - middle[1])
     shown = surface.triangles
-    corners = flat[shown[:, :3]]
-    facing = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    facing /= np.maximum(np.linalg.norm(facing, axis=1), 1e-30)[:, None]
-    is_seen = facing[:, 2] > 0.0
-    depth = corners[:, :, 2].mean(axis=1)
+    depth = flat[shown[:, :3], 2].mean(axis=1)
     colours = colours_of(bending)[shown].mean(axis=1)
-    upward = np.clip(surface.normals @ np.array([0.35, -0.25, 0.9]), 0.0, 1.0)
-    light = 1.0 - SHADED * (1.0 - upward)
+    lamp = np.array([0.35, -0.25, -0.9 if view.is_from_below else 0.9])
+    light = 1.0 - SHADED * (1.0 - np.clip(surface.normals @ lamp, 0.0, 1.0))
     group = scene.group("bent")
-    for number in np.flatnonzero(is_seen)[np.argsort(depth[is_seen])].tolist():
+    for number in np.flatnonzero(view.is_seen)[np.argsort(depth[view.is_seen])].tolist():
         fill = as_hex(colours[number] * light[number])
         points = [(float(x[node]), float(y[node])) for node in shown[number, :3]]
         group.add_polygon(points, fill, fill, 0.4)
-    mark = np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin()
-    draw_mark(scene, (float(x[mark]), float(y[mark])))
-    draw_scale(scene, Box(box.x0, box.y1 - scale_height + 8, box.x1, box.y1), bending, lengths, times)
+    draw_mark(scene, (float(x[mark]), float(y[mark])), is_shown)
+    draw_axes(scene, (box.x1 - 1.8 * AXIS, box.y1 - 1.4 * AXIS), view)
+    notes = Box(box.x0, box.y1 - scale_height + 8, box.x1, box.y1)
+    ring = "Ring: most." if is_shown else "Dashed ring: most, which is hidden."
+    below = "Seen from below. " if view.is_from_below else ""
+    draw_scale(scene, notes, bending, lengths, times, f"{below}{ring} Grey: pressed, not counted.")
 
 
-def draw_mark(scene: Scene, at: tuple[float, float]) -> None:
-    """A ring around the largest movement."""
+def draw_axes(scene: Scene, at: tuple[float, float], view: BentView) -> None:
+    """The axes of the part, as arrows from a point."""
+    group = scene.group("axes")
+    for name, along in zip("XYZ", view.frame.T, strict=True):
+        tip = (at[0] + AXIS * float(along[0]), at[1] - AXIS * float(along[1]))
+        group.add_arrow(at, tip, "#555555", 0.9, 5.0)
+        beyond = (at[0] + 1.35 * (tip[0] - at[0]), at[1] + 1.35 * (tip[1] - at[1]))
+        group.add_text(beyond, name, 8, anchor="middle")
+
+
+def draw_mark(scene: Scene, at: tuple[float, float], is_shown: bool) -> None:
+    """A ring around the largest movement, dashed where that is hidden."""
+    dashes = {} if is_shown else {"stroke_dasharray": "3 2"}
     scene.add_circle(at, 6.0, stroke="#ffffff", width=3.5)
-    scene.add_circle(at, 6.0, stroke="#d50000", width=1.8)
+    scene.add_circle(at, 6.0, stroke="#d50000", width=1.8, **dashes)
 
 
-def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, times: float) -> None:
+def draw_scale(
+    scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, times: float, words: str
+) -> None:
     """The colours with what they mean, and how many times as far as it is the part is drawn bent."""
     width, pieces = min(200.0, 0.45 * box.width), 50
     for k in range(pieces):
@@ -134,12 +200,12 @@ def draw_scale(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, ti
     unit = lengths.unit
     for k in range(STEPS):
         share = k / (STEPS - 1)
-        words = unit.format_small_number(share * most) + (f" {unit.small_name}" if k == STEPS - 1 else "")
-        left = box.x0 + share * width - (0.0 if k == 0 else measure_text(words, 9) / 2)
-        scene.add_text((left, box.y0 + 19), words, 9)
+        label = unit.format_small_number(share * most) + (f" {unit.small_name}" if k == STEPS - 1 else "")
+        left = box.x0 + share * width - (0.0 if k == 0 else measure_text(label, 9) / 2)
+        scene.add_text((left, box.y0 + 19), label, 9)
     said = f"Bent {times:,.0f} times as far as it is." if times > 1 else "Bent as far as it is."
     scene.add_text((box.x0 + width + 40, box.y0 + 8), said, 10, bold=True)
-    scene.add_text((box.x0 + width + 40, box.y0 + 20), "Ring: most. Grey: pressed, not counted.", 9)
+    scene.add_text((box.x0 + width + 40, box.y0 + 20), words, 9)
 
 
 def draw_bent_page(
