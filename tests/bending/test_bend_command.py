@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 import workhold
 from bent_bodies import need_elements
 from workhold import Load
-from workhold.bending import meshing
+from workhold.bending import asking, meshing
 from workhold.cli.main import app
 
 need_elements()
@@ -133,3 +133,26 @@ def test_the_sheet_has_a_page_of_it(result_file: str, tmp_path: Path) -> None:
     assert "times as far as it is." in bent and "µm" in bent and "Beware: Clamping bends" in bent
     outcome = CliRunner().invoke(app, [*common, str(tmp_path / "x.svg"), "--part", "part.step"])
     assert outcome.exit_code == 2 and "give --material" in outcome.stderr
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_stopped_on_the_way_it_tells_what_is_found(
+    result_file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kept: int
+) -> None:
+    bend_all = asking.find_bendings
+
+    def stop_after(result, rows, shape, asked, cancel, tell):
+        def watch(fraction: float, count: int) -> None:
+            tell(fraction, count)
+            if count == kept:
+                cancel.set()
+
+        return bend_all(result, rows, shape, asked, cancel, watch)
+
+    monkeypatch.setattr(asking, "find_bendings", stop_after)
+    picture = tmp_path / "bent.png"
+    outcome = run(result_file, "--thickness", "8", "--draw", str(picture), "--json")
+    assert outcome.exit_code == 130
+    told = json.loads(outcome.stdout)
+    assert len(told["fixtures"]) == kept and not told["complete"]
+    assert picture.exists() == bool(kept) and len(list(tmp_path.iterdir())) == kept

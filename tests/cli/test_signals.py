@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import suppress
+from importlib.util import find_spec
 from math import cos, pi, sin
 from pathlib import Path
 
@@ -24,6 +25,7 @@ COMMANDS = {
     "algebra": ("design", "flange", *VISE, "--engine", "algebra"),
     "explore": ("explore", "flange", "--pitch", "4,5,6", "--columns", "2,4,6", "--peg-radius", "1.5,2"),
     "verify": ("verify", "flange.npz"),
+    "bend": ("bend", "flange.npz", "--thickness", "8"),
 }
 # Seconds: the program promises two, to which a busy machine may add.
 MOST = 30
@@ -50,6 +52,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def started(folder: Path, request: pytest.FixtureRequest) -> Iterator[subprocess.Popen[str]]:
     """A command in a process of its own, which is not left behind."""
+    if request.param == "bend" and not find_spec("ngsolve"):
+        pytest.skip("the extra 'bending' is not installed")
     with subprocess.Popen(
         [sys.executable, "-m", "workhold", *COMMANDS[request.param]],
         cwd=folder,

@@ -87,8 +87,8 @@ MATERIALS = {
             2_800.0,
             0.35,
             1410.0,
-            "E assumed, between 2.5 and 3.0 GPa of copolymer and homopolymer in the Engineering Plastics Handbook, table 5.5; "
-            f"{ASSUMED_RATIO}",
+            "E assumed, between 2.5 and 3.0 GPa of copolymer and homopolymer in the Engineering Plastics Handbook, "
+            f"table 5.5; {ASSUMED_RATIO}",
         ),
         ElasticMaterial("pa6", 3_300.0, 0.39, 1140.0, "assumed, of dry stock; moist it is much softer"),
         ElasticMaterial("peek", 4_200.0, 0.38, 1310.0, "assumed"),
