@@ -13,7 +13,7 @@ import pytest
 from batch_helpers import COARSE, IMPOSSIBLE, InlineQueue, reported, rows_of, run_in
 
 import workhold
-from workhold import Fence, Plate, Query
+from workhold import Fence, Load, PlainVise, Plate, Query, StrapPlate
 from workhold.batch import tables
 from workhold.batch.run import ANY_PART, Batch, HeldIn
 from workhold.batch.tables import BEST, RESULTS, JobRow, list_table_names, write_tables
@@ -68,6 +68,31 @@ def test_rows_say_what_the_records_do(rows: Iterator[JobRow]) -> None:
                 assert row[key] == pytest.approx(value)
         assert one.row["location_error"] == one.best[0]["location_error"]
     assert held_in == {"coarse", "plate", "fence", "pair"} and True in fit
+
+
+@pytest.mark.parametrize(
+    ("straps", "fit"), [(StrapPlate(20, 3), True), (StrapPlate(20, 3, tip_radius=60), None)]
+)
+def test_rows_of_what_friction_holds_say_whether_it_does(
+    folder: Path, straps: StrapPlate, fit: bool | None
+) -> None:
+    """Where no straps find places, seats that nobody looked at come first, of which it is not known."""
+    load = Load(points=(30, 20), force=200, directions=0)
+    vise = PlainVise(jaw_width=100, jaw_height=40, max_opening=80)
+    asked = {"thickness": 20, "loads": [load], "strapped": 2}
+    held_in = (
+        HeldIn("straps", Query(ANY_PART, straps, **asked)),
+        HeldIn("jaws", Query(ANY_PART, vise, thickness=20, loads=[load])),
+    )
+    place = folder / f"straps-{straps.tip_radius:g}"
+    place.mkdir()
+    batch = run_in(place, folder / "good.json", queue=InlineQueue(), held_in=held_in)
+    under, between = (one for one in rows_of(batch, place))
+    assert under.row["state"] == "held" and under.row["fit"] is fit
+    assert between.row["fit"] is not None
+    assert all(len(row["holes"].split()) == 3 and set(row) == set(BEST) for row in under.best)
+    for number, columns in enumerate((RESULTS, BEST)):
+        assert set((under.row, under.best[0])[number]) == set(columns)
 
 
 def test_both_forms_have_the_same_rows(

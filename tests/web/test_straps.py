@@ -49,6 +49,29 @@ def test_seat_is_drawn_and_has_a_sheet(server: RunningServer, job: str) -> None:
         assert server.client.get(f"{job}/{name}").status_code == 200
 
 
+def test_straps_over_supports_pass_a_program(server: RunningServer) -> None:
+    """The answer names the supports, and says what the tools ask of each strap, with the line."""
+    text = "G21 G90\nG0 X30. Y20. Z70.\nT1 M6\nZ5.\nG1 Z-3. F200\nX70. F600\nG0 Z70.\nM30\n"
+    program = {
+        "name": "slot.nc",
+        "text": text,
+        "tools": {"name": "tools.toml", "text": "tool.1 = {diameter = 10, flute_length = 30, stickout = 40}\n"},
+        "start": [30, 20, 70],
+        "thickness": 25,
+        "peg_height": 12,
+        "cutting": {"cutting_force": 200},
+    }
+    plate = {**PLATE, "over": "supports", "supports": {"height": 15}}
+    asked = {**ASKED, "toolkit": plate, "loads": [], "program": program, "best": 3}
+    job = server.done(asked)
+    said = server.client.get(f"{job}/fixtures/1").json()
+    assert len(said["hold"]["supports"]) == 3 and 'class="support"' in str(said["picture"])
+    assert said["program_forces"]["line"] in (5, 6) and "of each strap" in said["program_forces"]["words"][0]
+    assert said["quality"]["clamp_needed"] == pytest.approx(said["program_forces"]["force"])
+    for ending in ("sheet.pdf", "sheet.svg"):
+        assert server.client.get(f"{job}/fixtures/1/{ending}").status_code == 200
+
+
 def test_reason_is_told_where_there_is_none(server: RunningServer) -> None:
     none = server.done({**ASKED, "loads": [], "restrictions": {"avoid": [0, 1, 2]}})
     assert server.client.get(none).json()["found"] == 0

@@ -20,6 +20,7 @@ from workhold.batch.run import Job
 from workhold.batch.store import Store, parse_record
 from workhold.errors import make_encodable
 from workhold.files.atomic import write_binary_file, write_text_file
+from workhold.files.result.strapped_text import is_strapped
 from workhold.model.notes import Many, round_to_two_digits
 from workhold.model.quality import FIGURES, PROGRAM_FIGURE, SEATING_FIGURES
 from workhold.model.query import Query
@@ -132,15 +133,25 @@ def take_record(row: Row, named: Row, record: Mapping[str, Any], job: Job) -> li
     if best:
         row |= {key: best[0][key] for key in (*FIGURE_COLUMNS, *PASSING_COLUMNS)}
         if "closure_margin" not in record["fixtures"][0]["quality"]:
-            row["fit"] = is_pressed(record["fixtures"][0])
+            row["fit"] = is_held_by_friction(record["fixtures"][0])
             return best
         off = record["tolerance"]["peg"] + record["tolerance"]["face"]
         row["fit"] = not bool(is_unfit(row["closure_margin"], row["location_error"], off))
     return best
 
 
-def is_pressed(fixture: Mapping[str, Any]) -> bool:
-    """Return whether flat jaws press all over what they touch, and neither touches a corner alone."""
+def is_held_by_friction(fixture: Mapping[str, Any]) -> bool | None:
+    """Return whether flat jaws press all over what they touch, and neither touches a corner alone.
+
+    Under straps it is whether a hand seats the part and all that acts on it is held; None where nobody looked.
+    """
+    if is_strapped(fixture):
+        needs = [
+            *fixture["quality"].get("clamp_needed_each", ()),
+            fixture.get("program_force", {"force": 0})["force"],
+        ]
+        is_held = fixture["places"] is None or (bool(fixture["straps"]) and None not in needs)
+        return fixture["push"] is not None and is_held if fixture["looked_at"] else None
     touched = all(fixture[jaw]["segments"] for jaw in ("fixed", "moving"))
     return touched and bool(fixture["quality"]["full_contact"])
 
@@ -179,7 +190,7 @@ def make_fixture_row(fixture: Mapping[str, Any], job: Job) -> Row:
         "jaw_separation": fixture.get("jaw_separation"),
         "holes": " ".join(holes),
         "faces": " ".join(str(peg["segment"]) for peg in fixture["pegs"]),
-        **fixture["quality"],
+        **{key: value for key, value in fixture["quality"].items() if key in BEST},
     }
     if (seating := fixture.get("seating")) is not None:
         row |= collect_seating_figures(seating)

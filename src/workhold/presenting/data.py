@@ -38,6 +38,7 @@ from workhold.model.quality import SEATING_FIGURES
 from workhold.model.search_report import Explanation, Proof
 from workhold.model.setup import list_length_settings
 from workhold.model.solid import SolidOutline
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.seating.clamping import by_hand
 from workhold.statics.why_first import why_first
@@ -145,8 +146,11 @@ def describe_fixture(fixture: Fixture, toolkit: Toolkit, rank: int | None = None
 
 
 def hold_data(fixture: Fixture) -> dict[str, Any]:
-    """Describe how flat jaws hold a part, as a result file does."""
+    """Describe how flat jaws or straps hold a part, as a result file does."""
     entry = hold_entry(fixture)
+    if isinstance(fixture.hold, StrappedHold):
+        kept = ("straps", "supports", "push", "places", "looked_at", "program_force", "quality")
+        return {name: entry[name] for name in kept if name in entry}
     names = ("parallels", "stop", "fixed", "moving", "jaw_separation", "warnings", "program_force")
     return {"pegs": [], **{name: entry[name] for name in names if name in entry}, "quality": entry["quality"]}
 
