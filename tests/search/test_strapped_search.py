@@ -294,6 +294,7 @@ def test_pads_that_find_no_three_holes_leave_no_straps():
     result = workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=1, best=3000)
     (hold,) = (one for one in result.holds if one.is_looked_at)
     assert hold.straps == () and hold.holds_nothing and hold.places < 3
+    assert "The best seat is not held: there are no three supports" in str(result.notes[-1])
 
 
 def test_bolts_stand_in_holes_of_their_own():

@@ -55,7 +55,10 @@ def test_straps_over_supports_pass_a_program(server: RunningServer) -> None:
     program = {
         "name": "slot.nc",
         "text": text,
-        "tools": {"name": "tools.toml", "text": "tool.1 = {diameter = 10, flute_length = 30, stickout = 40}\n"},
+        "tools": {
+            "name": "tools.toml",
+            "text": "tool.1 = {diameter = 10, flute_length = 30, stickout = 40}\n",
+        },
         "start": [30, 20, 70],
         "thickness": 25,
         "peg_height": 12,

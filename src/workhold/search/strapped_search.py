@@ -35,6 +35,7 @@ from workhold.model.result import Result
 from workhold.model.straps import USUAL_SEATS, HandPush, Strap, StrappedHold
 from workhold.search.seat_search import FoundSeats, find_seats
 from workhold.supports.straps import StrapSearch, question_of
+from workhold.supports.words_of_straps import describe_missing_places
 
 __all__ = ["find_strapped_fixtures", "within_error"]
 
@@ -73,8 +74,21 @@ def find_strapped_fixtures(
         whole,
         table=table.take(slice(0, len(chosen))),
         holds=tuple(holds[: len(chosen)]),
+        notes=(*whole.notes, *remarks_on(holds, query)),
         complete=whole.complete and is_whole,
     )
+
+
+def remarks_on(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
+    """Why seats that nobody looked at come first, where no other is held."""
+    seen = [hold for hold in holds if hold.is_looked_at and not hold.is_unfit]
+    if not query.is_loaded or not seen or not all(hold.holds_nothing for hold in seen):
+        return []
+    why = "no force of the straps holds everything there: take more straps, or ask for more of the seats."
+    if not any(hold.straps for hold in seen):
+        why = describe_missing_places(question_of(query))
+    none = "The best seat is not" if len(seen) == 1 else f"None of the {len(seen)} best seats is"
+    return [Remark(f"{none} held: {why}")]
 
 
 def within_error(table: FixtureTable, query: Query) -> FixtureTable:

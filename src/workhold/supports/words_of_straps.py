@@ -14,7 +14,14 @@ from workhold.supports.straps import StrapQuestion
 from workhold.supports.straps_over_supports import find_middle, stand_on
 from workhold.units import Unit
 
-__all__ = ["describe_program_need", "list_remarks", "list_steps", "list_warnings", "reckoned_with"]
+__all__ = [
+    "describe_missing_places",
+    "describe_program_need",
+    "list_remarks",
+    "list_steps",
+    "list_warnings",
+    "reckoned_with",
+]
 
 
 def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> list[str]:

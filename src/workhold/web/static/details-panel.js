@@ -41,14 +41,19 @@ function writePegs(row) {
       make("tr", {},
         make("td", {}, hole), make("td", {}, row.touched[k]),
         make("td.number", {}, bareLength(row.pegs[k][0] + row.placed[0])), make("td.number", {}, bareLength(row.pegs[k][1] + row.placed[1])),
-        make("td.number", {}, loaded ? bareForce(loaded[k]) : number(row.forces[k], 3)),
+        make("td.number", {}, row.hold ? "–" : loaded ? bareForce(loaded[k]) : number(row.forces[k], 3)),
       ),
     ),
   );
+  const settings = settingWords(row).map(capital).join(", ");
   byId("pose-words").textContent =
-    `${settingWords(row).map(capital).join(", ")}. ${row.order ? `${row.order} ` : ""}Part turned by ${number(writtenTurn(row), 3)}°, its zero at ` +
-    `${bareLength(row.x + row.placed[0])}, ${length(row.y + row.placed[1])} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + overhangWords(row) + (loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
+    `${settings ? `${settings}. ` : ""}${row.order ? `${row.order} ` : ""}Part turned by ${number(writtenTurn(row), 3)}°, its zero at ` +
+    `${bareLength(row.x + row.placed[0])}, ${length(row.y + row.placed[1])} from ${row.flush.length ? "" : "hole "}${row.origin}. ` + overhangWords(row) +
+    (row.hold?.steps ? [...row.hold.steps, ...row.hold.warnings.map(sentence)].join(" ") : row.hold || loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
 }
+
+/** Words that begin with a small letter, as a sentence of their own. @param {string} words */
+const sentence = (words) => `${words[0].toUpperCase()}${words.slice(1)}`;
 
 /** How far the part stands out beyond a jaw, or hangs over its plates. */
 function overhangWords({ hangs_over, stands_out_of: wall }) {
@@ -87,7 +92,7 @@ function writeQuality(row, pinned) {
       }
       return make("tr", { title: pressedBy(figure.meaning, row.mover) }, make("th", { scope: "row" }, pressedBy(figure.words, row.mover)), ...cells);
     });
-  if (pinned) {
+  if (pinned && row.settings.length) {
     const cells = [pinned, row].map((each) => make("td.number", {}, each.settings.map((one) => length(one.length, 2)).join(", ")));
     // Clamps that push other ways are told by other lengths.
     const names = [...new Set([pinned, row].map((each) => each.settings[0].name))];

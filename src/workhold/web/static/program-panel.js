@@ -219,8 +219,8 @@ function tellPassing() {
   show(byId("passing-card"), selected !== null && program !== null);
   const { passing = null, program_forces: asksFor = null } = (program && selected) || {};
   fixtureDrawing.showPassing(passing);
-  byId("passing").textContent = selected?.hold
-    ? `The tools keep ${length(program.clearance, 2)} or more from both jaws.`
+  byId("passing").textContent = selected?.hold && program
+    ? `The tools keep ${length(program.clearance, 2)} or more from ${selected.hold.straps ? "locators and straps" : "both jaws"}.`
     : passing
     ? `T${passing.tool} comes nearest in line ${passing.line}: ${length(passing.distance)} from the ${passing.element}. ${length(program.clearance, 2)} is asked for.`
     : "No tool comes down to where anything holds the part.";
