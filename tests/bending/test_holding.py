@@ -150,6 +150,9 @@ def test_solved_at_once_is_what_is_superposed(order: int) -> None:
     works = [factor * solved.work_of(number) for number, factor in zip(numbers, hold.clamping, strict=True)]
     at_once = body.respond([sum(works)])[0]
     assert np.abs(at_once - superposed).max() <= 1e-10 * np.abs(at_once).max()
+    summed = SolvedLoads(body, solved.units, is_summed=True)
+    assert summed.add_up(numbers, hold.clamping) == pytest.approx(at_once, abs=1e-12)
+    assert len(summed.responses) == 1 and len(solved.responses) == len(set(numbers))
 
 
 def test_unit_loads_that_fixtures_share_are_solved_once() -> None:

@@ -111,12 +111,15 @@ class UnitLoads:
     surface : of the part.
     forces : in the order in which they came.
     footings : of these, where they act on the surface.
+    numbers : by points and forces.
+    places : footings by points.
     """
 
     surface: Surface
     forces: list[PointForces] = field(factory=list)
     footings: list[Footing] = field(factory=list)
     numbers: dict[bytes, int] = field(factory=dict)
+    places: dict[bytes, Footing] = field(factory=dict)
 
     def add(self, forces: Iterable[PointForces]) -> list[int]:
         """The numbers of some loads or readings, those that are new at the end."""
@@ -126,9 +129,17 @@ class UnitLoads:
             number = self.numbers.setdefault(key, len(self.forces))
             if number == len(self.forces):
                 self.forces.append(one)
-                self.footings.append(self.surface.find_footing(one.points, one.outward))
+                self.footings.append(self.find_footing(one))
             found.append(number)
         return found
+
+    def find_footing(self, one: PointForces) -> Footing:
+        """Where a load acts; loads on one patch share it."""
+        outward = b"" if one.outward is None else one.outward.tobytes()
+        key = one.points.tobytes() + outward
+        if key not in self.places:
+            self.places[key] = self.surface.find_footing(one.points, one.outward)
+        return self.places[key]
 
 
 @frozen(eq=False)
@@ -249,14 +260,14 @@ def find_bendings(
         second.solve(number)
         tell(MESHED + (SOLVED - MESHED) * (count + 1) / len(needed), 0)
     is_cut = find_cut_nodes(surface, asked.faces, query.workpiece, height)
+    gives = [None if loads is None else second.find_worst_give(one, loads, places) for one in held]
+    cut = {number for give in gives if give is not None for number in places[give.place].cuts}
+    apart = len(cut.union(*(one.numbers for one in held)))
+    third.is_summed = (1 if loads is None else 2) * len(held) < apart
     found: list[Bending] = []
-    for one in held:
-        give = None if loads is None else second.find_worst_give(one, loads, places)
-        needed = [*one.numbers, *(() if give is None else places[give.place].cuts)]
-        for number in needed:
-            if cancel.is_set():
-                return found
-            third.solve(number)
+    for one, give in zip(held, gives, strict=True):
+        if cancel.is_set():
+            break
         found.append(describe(one, give, second, third, loads, places, is_cut, query, asked))
         tell(SOLVED + (1 - SOLVED) * len(found) / len(held), len(found))
     return found
@@ -284,10 +295,10 @@ def describe(
     most = find_most_moved(one, moved, pressed, is_cut, second, third)
     given = None
     if give is not None and loads is not None:
-        vectors = [
-            level.compute_compliance(one, places[give.place]) @ give.vector for level in (second, third)
-        ]
-        value, change = (float(np.linalg.norm(of)) for of in (vectors[1], vectors[1] - vectors[0]))
+        before, after = (
+            level.move_place(one, places[give.place], give.vector[:, None])[:, 0] for level in (second, third)
+        )
+        value, change = float(np.linalg.norm(after)), float(np.linalg.norm(after - before))
         row, there = int(loads.row[give.load]), loads.points[give.load].tolist()
         line = tool = load = None
         if row >= 0 and query.program is not None:
@@ -327,8 +338,10 @@ def find_most_moved(
     longest = np.linalg.norm(np.diff(surface.corners[faces], axis=1), axis=2).max()
     shares = list_lattice(4 * int(np.clip(np.ceil(longest / CLOSE_BY / 4), 1, MOST_QUARTERS)))
     points, after = surface.place_on(faces, shares), third.clamp_on(one, faces, shares)
-    counts = ~find_pressed(points.reshape(-1, 3), one.hold.pressed).reshape(points.shape[:2])
-    far = np.where(counts, np.linalg.norm(after, axis=2), 0.0)
+    far = np.linalg.norm(after, axis=2)
+    most_there = np.flatnonzero(far >= (1.0 - 1e-9) * most)
+    is_dent = find_pressed(points.reshape(-1, 3)[most_there], one.hold.pressed)
+    far.ravel()[most_there[is_dent]] = 0.0
     face, point = np.divmod(int(far.argmax()), len(shares))
     before = second.clamp_on(one, faces[[face]], shares[[point]])[0, 0]
     change = float(np.linalg.norm(after[face, point] - before))
@@ -361,10 +374,17 @@ def find_pressed(nodes: Array, points: Array) -> Mask:
 
 
 class SolvedLoads:
-    """A body with what is solved of the unit loads on it."""
+    """A body with what is solved of the unit loads on it.
 
-    def __init__(self, body: ElasticBody, units: UnitLoads) -> None:
-        self.body, self.units = body, units
+    Parameters
+    ----------
+    is_summed : whether sums of unit loads are solved as one, which pays where there are fewer sums than unit loads.
+    """
+
+    def __init__(self, body: ElasticBody, units: UnitLoads, is_summed: bool = False) -> None:
+        self.body, self.units, self.is_summed = body, units, is_summed
+        # Sums have negative numbers, in the order in which they came.
+        self.sums: dict[bytes, int] = {}
         self.works: dict[int, Array] = {}
         self.responses: dict[int, Array] = {}
         self.readings: dict[tuple[int, int], float] = {}
@@ -381,8 +401,21 @@ class SolvedLoads:
             self.responses[number] = self.body.respond([self.work_of(number)])[0]
         return self.responses[number]
 
+    def gather(self, numbers: Sequence[int], factors: Array) -> tuple[Sequence[int], Array]:
+        """A sum of unit loads as it is solved: as it stands, or as one load by itself."""
+        if not self.is_summed:
+            return numbers, factors
+        key = np.array(numbers).tobytes() + factors.tobytes()
+        number = self.sums.setdefault(key, -1 - len(self.sums))
+        if number not in self.works:
+            self.works[number] = np.asarray(
+                sum(factor * self.work_of(k) for k, factor in zip(numbers, factors.tolist(), strict=True))
+            )
+        return [number], np.ones(1)
+
     def add_up(self, numbers: Sequence[int], factors: Array) -> Array:
         """How the surface moves (S, 3) under a sum of unit loads."""
+        numbers, factors = self.gather(numbers, factors)
         total = np.zeros((len(self.body.surface_unknowns[0]), 3))
         for number, factor in zip(numbers, factors.tolist(), strict=True):
             if factor:
@@ -407,6 +440,7 @@ class SolvedLoads:
         ----------
         gives : (R,) how far its contacts give way, in mm.
         """
+        numbers, factors = self.gather(numbers, factors)
         return one.hold.find_motion([self.read(level, numbers) @ factors for level in one.reads], gives)
 
     def clamp(self, one: HeldFixture) -> Array:
@@ -427,23 +461,21 @@ class SolvedLoads:
         motion = self.find_motion(one, one.numbers, clamping, np.zeros(len(one.hold.gives)))
         return self.add_up(one.numbers, clamping), motion
 
-    def compute_compliance(self, one: HeldFixture, place: PressedPlace) -> Array:
-        """How a place moves (3, 4) under unit forces and a moment on it, with all that answers them."""
-        answers = one.hold.answers @ place.wrenches
+    def move_place(self, one: HeldFixture, place: PressedPlace, vectors: Array) -> Array:
+        """How a place moves (3, V) under forces and a moment on it (4, V), with all that answers them."""
+        answers = one.hold.answers @ place.wrenches @ vectors
         numbers = [*place.cuts, *one.numbers]
-        factors = np.vstack([np.eye(4), answers])
-        motions = np.array(
-            [
-                self.find_motion(one, numbers, own, one.hold.gives @ answer)
-                for own, answer in zip(factors.T, answers.T, strict=True)
-            ]
-        ).T
         rigid = rigid_motions(place.middle[None])[0]
-        return np.asarray(self.read(place.reads, numbers) @ factors + rigid @ motions)
+        moved = []
+        for factors, answer in zip(np.vstack([vectors, answers]).T, answers.T, strict=True):
+            motion = self.find_motion(one, numbers, factors, one.hold.gives @ answer)
+            loaded, shares = self.gather(numbers, factors)
+            moved.append(self.read(place.reads, loaded) @ shares + rigid @ motion)
+        return np.array(moved).T
 
     def find_worst_give(self, one: HeldFixture, loads: CutterLoads, places: list[PressedPlace]) -> WorstGive:
         """Where a fixture gives most, and under what."""
-        matrices = [self.compute_compliance(one, place) for place in places]
+        matrices = [self.move_place(one, place, np.eye(4)) for place in places]
         worst: WorstGive | None = None
         for number in range(len(loads)):
             place = int(loads.owner[number])
