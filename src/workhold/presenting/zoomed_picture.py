@@ -128,7 +128,8 @@ def is_reached(clamp: ShownClamp) -> bool:
 def draw_forces(scene: Scene, bench: Bench, view: View) -> None:
     """Draw the force of each contact, which keeps its size."""
     forces = scene.group("forces")
-    for index in range(len(bench.fixture.pegs)):
+    # Under straps nothing is known of the locators' forces.
+    for index in range(len(bench.fixture.pegs) if bench.fixture.hold is None else 0):
         tail, tip = compute_force_arrow(bench, index, view, LONGEST_ARROW)
         group = add_fixed_size_group(forces, tail)
         group.add_arrow(tail, tip, "#ffffff", 5.0, 14)

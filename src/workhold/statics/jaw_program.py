@@ -14,6 +14,7 @@ Reference: A. H. Land, A. G. Doig, *An automatic method of solving discrete prog
 
 from __future__ import annotations
 
+from functools import cached_property
 from heapq import heappop, heappush
 from itertools import count, product
 from math import ceil, cos, inf, pi, sin
@@ -243,21 +244,31 @@ class PressedPart:
         rows[:, 5] += torques[twist] / grip.length
         return np.asarray(rows * self.safety + self.still)
 
+    @cached_property
+    def ends(self) -> tuple[Array, Array, Array, Array, Array, Array]:
+        """Both ends of all pieces: places (N, 3), middles and halves of ranges, axial forces, forces, and torques."""
+        pieces = self.pieces
+        c, s = cos(self.theta), sin(self.theta)
+        ends = np.concatenate([pieces.start, pieces.end])
+        level = ends[:, :2] @ np.array([[c, s], [-s, c]]) + self.position
+        middle, half = (np.tile(one, 2) for one in (pieces.middle + self.theta, pieces.half))
+        force, torque = (np.tile(one, 2) for one in (pieces.force, pieces.torque))
+        places = np.column_stack([level, ends[:, 2]])
+        return places, middle, half, np.tile(pieces.axial, (2, 1)), force, torque
+
     def hardest_against(self, motion: Array) -> tuple[Array, int]:
         """Return the load (6,) that drives the part hardest along a motion (6,), and the piece that makes it."""
         pieces, grip = self.pieces, self.grip
-        c, s = cos(self.theta), sin(self.theta)
-        turn = np.array([[c, s], [-s, c]])
-        ends = np.concatenate([pieces.start, pieces.end])
-        places = np.column_stack([ends[:, :2] @ turn + self.position, ends[:, 2]])
+        places, middle, half, axial, force, torque = self.ends
         # What a force at a place does along the motion: the motion of that place.
-        moved = -motion[:3] - np.cross(motion[3:], places - grip.centre) / grip.length
-        middle, half = (np.tile(one, 2) for one in (pieces.middle + self.theta, pieces.half))
+        arms = (places - grip.centre) / grip.length
+        (a, b, c), (x, y, z) = motion[3:].tolist(), arms.T
+        along, across = -motion[0] - (b * z - c * y), -motion[1] - (c * x - a * z)
+        upward = -motion[2] - (a * y - b * x)
+        moved = np.column_stack([along, across, upward])
         way = np.arctan2(moved[:, 1], moved[:, 0])
         way = middle + np.clip((way - middle + pi) % (2 * pi) - pi, -half, half)
-        axial = np.tile(pieces.axial, (2, 1))
         press = np.where(moved[:, 2] > 0.0, axial[:, 0], axial[:, 1])
-        force, torque = (np.tile(one, 2) for one in (pieces.force, pieces.torque))
         power = force * (moved[:, 0] * np.cos(way) + moved[:, 1] * np.sin(way)) - press * moved[:, 2]
         power += torque * abs(motion[5]) / grip.length
         at = int(power.argmax())

@@ -30,5 +30,10 @@ def test_a_seat_under_straps_is_shown(walk: Walk, over: str) -> None:
     words = page.inner_text("#pose-words")
     assert words.startswith("Part turned by") and "tighten the straps" in words
     assert page.inner_text("#pegs tr td:last-child") == "–"
+    assert page.locator("#drawing-fixture .forces *").count() == 0
+    # What only pegs are asked for is not offered.
+    for button in ("#push", "#try", "#close-vise"):
+        assert page.locator(button).is_hidden()
+    page.click("#pin")
     page.locator("#list .row").nth(1).click()
     walk.arrived()

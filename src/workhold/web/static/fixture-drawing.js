@@ -199,7 +199,7 @@ export class FixtureDrawing {
   listen(peg, k) {
     const { row } = this;
     const where = row.flush.includes(k) ? "Contact with" : "Peg in";
-    const words = `${where} ${row.holes[k]}, on face ${row.touched[k]}, presses with ${row.forces[k].toFixed(3)} N for each N of ${forceOf(row)}`;
+    const words = `${where} ${row.holes[k]}, on face ${row.touched[k]}${row.hold ? "" : `, presses with ${row.forces[k].toFixed(3)} N for each N of ${forceOf(row)}`}`;
     for (const [name, value] of Object.entries({ tabindex: "0", role: "img", "aria-label": words })) peg.setAttribute(name, value);
     for (const name of ["pointerenter", "focus"]) {
       peg.addEventListener(name, () => {

@@ -43,7 +43,12 @@ export function forcesPanel() {
     const list = listOf(state.job);
     if (list !== bestOf && !held) askBest();
   });
-  on(["selected", "force"], () => show(byId("forces"), state.force !== null && state.selected !== null));
+  on(["selected", "force"], () => {
+    // What friction holds is reckoned with the design; pegs alone do not tell what a push does.
+    const byFriction = Boolean(state.selected?.hold);
+    show(byId("push"), !byFriction);
+    show(byId("forces"), state.force !== null && state.selected !== null && !byFriction);
+  });
 }
 
 /** Begin to push on the part, or stop. */
@@ -155,7 +160,7 @@ function kindWords(kind) {
 function write() {
   const { force, selected, part } = state;
   byId("push").setAttribute("aria-pressed", String(force !== null));
-  if (!force || !selected || !part) {
+  if (!force || !selected || !part || selected.hold) {
     tellForces(null);
     fixtureDrawing.showLoad(null);
     return;

@@ -109,6 +109,7 @@ function showSelected() {
   show(byId("below"), row !== null && state.view === "fixture");
   byId("view-fixture").toggleAttribute("disabled", row === null && miss === null);
   for (const id of ["close-vise", "push", "pin"]) byId(id).toggleAttribute("disabled", row === null);
+  show(byId("close-vise"), !row?.hold?.straps);
   if (!row) {
     if (!miss) fixtureDrawing.clear();
     return;
@@ -200,7 +201,7 @@ function pegWords(k, at, row) {
   show(box, k !== null && row !== null);
   if (k === null || !row) return;
   const force = fixtureDrawing.load && row === state.selected ? forceText(fixtureDrawing.load.forces[k]) : `${number(row.forces[k], 3)} N for each N of ${forceOf(row)}`;
-  box.textContent = `${row.holes[k]} · face ${row.touched[k]} · ${force}`;
+  box.textContent = `${row.holes[k]} · face ${row.touched[k]}${row.hold ? "" : ` · ${force}`}`;
   const wide = box.offsetWidth;
   box.style.left = `${Math.max(6, Math.min(innerWidth - wide - 6, at.left + at.width / 2 - wide / 2))}px`;
   box.style.top = `${at.bottom + 8 + box.offsetHeight > innerHeight ? at.top - box.offsetHeight - 8 : at.bottom + 8}px`;

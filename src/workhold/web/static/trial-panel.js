@@ -87,6 +87,7 @@ function follow(changed) {
   const on = trial !== null && selected !== null;
   show(byId("seating"), on);
   byId("try-close").textContent = kindOf(state.toolkit).closes;
+  show(byId("try"), !selected?.hold);
   byId("try").setAttribute("aria-pressed", String(on));
   byId("try").toggleAttribute("disabled", selected === null);
   byId("close-vise").toggleAttribute("disabled", selected === null || on);
