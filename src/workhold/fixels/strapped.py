@@ -83,7 +83,7 @@ class StrapPlate(Toolkit):
             fields.BOLT_PITCH,
             fields.BOLT_OFFSET,
             fields.MAX_FORCE.relabel(
-                PageLabel("Rated force of a strap in N", "not known"),
+                PageLabel("Rated force of a strap", "not known"),
                 help="What each strap, or the vise, is rated for, in N or with its unit.",
             ),
         ),
