@@ -358,7 +358,7 @@ MAX_FORCE = ToolkitField(
     "max_force",
     "force",
     "What the vise is rated for, in N or with its unit.",
-    (PageLabel("Rated force in N", "not known"),),
+    (PageLabel("Rated force", "not known"),),
     figure="rated force",
     unset="not known",
     entry="write the force in N as a number",
